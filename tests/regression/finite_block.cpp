@@ -34,6 +34,14 @@ TEST_CASE("a high block close to sticking rocks, whatever the step and the cells
   }
 }
 
+TEST_CASE("a block a quarter as high as it is long swings by less of what presses it than one half as high",
+          "[friction][finite]") {
+  const Pressed high = rock({}).late, low = rock({"/bodies/1/geometry/of/upper=[0.4, 0.1]"}).late;
+  const double swing_of_high = (high.most - high.least) / high.pressing,
+               swing_of_low = (low.most - low.least) / low.pressing;
+  CHECK(swing_of_low < 2. / 3 * swing_of_high);
+}
+
 // The normal of curved bodies was not what was wrong, and changes little.
 TEST_CASE("the widest gap changes the peak force of two spheres by less than four per cent", "[friction][finite]") {
   for (const std::string place : {"1.025", "1.0421875"}) {

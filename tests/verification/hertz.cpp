@@ -8,6 +8,7 @@
 #include "metrics/particle_quantities.hpp"
 #include "support/catch.hpp"
 #include "support/files.hpp"
+#include "support/page.hpp"
 #include "support/scene.hpp"
 
 using namespace mpm;
@@ -55,6 +56,8 @@ TEST_CASE("the closed form of Hertz has the numbers of the case", "[hertz]") {
   CHECK(modulus == Approx(109.8901).epsilon(1e-6));
   CHECK(contact.half_width() == Approx(0.68077837).epsilon(1e-7));
   CHECK(contact.pressure() == Approx(9.35135129).epsilon(1e-7));
+  CHECK(1000 * std::pow(contact.half_width(), 2) / (2 * 8) ==
+        Page("docs/contact.md").read("with rows 17 mm and a sag of # mm").front().rounded());
   CHECK(contact.stress(0, 0) == Approx(-contact.pressure()).epsilon(1e-12));
   CHECK(contact.stress(0.5, 0) == Approx(-9.35135129 * std::sqrt(1 - std::pow(0.5 / 0.68077837, 2))).epsilon(1e-7));
   CHECK(contact.stress(0, 0.6) == Approx(-9.35135129 / std::sqrt(1 + std::pow(0.6 / 0.68077837, 2))).epsilon(1e-7));
@@ -105,7 +108,14 @@ Pressed press(const std::vector<std::string>& settings) {
 TEST_CASE("the stress under two cylinders is that of Hertz", "[hertz][contact]") {
   std::printf("Cylinders pressed together, 6 cells a half-width\n");
   const Pressed found = press({});
-  CHECK(found.contact.half_width() > 5 * 0.136);
+  const double cell = 0.136, b = found.contact.half_width();
+  const auto printed = Page("docs/contact.md")
+                           .read(
+                               "together (E = 200 Pa, ν = 0.3) by # N/m with rows 34 mm apart, a contact of # cells "
+                               "half-width and a sag of # mm");
+  CHECK(found.contact.force == printed[0].rounded());
+  CHECK(b / cell == printed[1].rounded());
+  CHECK(1000 * b * b / (2 * 8) == printed[2].rounded());
   CHECK(found.rms < 0.08);
   CHECK(found.scale == Approx(1).epsilon(0.04));
 }
