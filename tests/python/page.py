@@ -9,7 +9,8 @@ saved as that file. Blocks that import VTK are left out where it is not installe
 page_numbers/PAGE.json, where there is one, holds the sentences of the page with a # for each number, and the expression
 that gives it: of the page's own names, of those that the lines under "first" make, and of after(WORDS, k), the number that
 stands behind these words in what the page prints, for the k-th time. Numbers of the prose that no sentence names are
-mistakes; "given" says of which no run decides, and why.
+mistakes; "given" says of which no run decides, and why. "words" are sentences that state a quantity in words, with an
+expression that holds where a run decides it; tests/unit/page_numbers.cpp looks for others.
 """
 
 import contextlib
@@ -90,6 +91,9 @@ def check_numbers(listed):
                 f"{page}: the page says {number} and {expression} is {value:.6g}: {sentence['says']}")
             count += 1
         left = re.sub(pattern_of(sentence["says"]), "\n", left)
+    for sentence in listed.get("words", []):
+        assert len(re.findall(pattern_of(sentence["says"]), prose)) == 1, f"{page}: stands not once: {sentence['says']}"
+        assert eval(sentence.get("holds", "True"), names), f"{page}: does not hold: {sentence['says']}"
     for group in listed["given"]:
         for sentence in group["says"]:
             assert len(re.findall(pattern_of(sentence), prose)) == 1, f"{page}: stands not once: {sentence}"

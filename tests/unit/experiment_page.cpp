@@ -1,4 +1,4 @@
-// docs/experiment_file.md prints the default of each key: those that are values are the ones that the schema has.
+// docs/experiment_file.md prints the default of each key and the range of many: they are those that the schema has.
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -27,6 +27,36 @@ void gather_defaults(const Json& at, std::map<std::string, std::set<std::string>
   for (const Json& child : at) gather_defaults(child, defaults);
 }
 
+/// The schema's least and largest values by key, in the same way; "exclusiveMinimum" and the like count as those.
+void gather_bounds(const Json& at, std::map<std::string, std::set<std::pair<double, double>>>& bounds) {
+  if (!at.is_structured()) return;
+  if (at.is_object() && at.contains("properties"))
+    for (const auto& [key, property] : at["properties"].items()) {
+      std::pair<double, double> range{-1e300, 1e300};
+      const auto narrow = [&](const Json& one) {
+        for (const auto& [name, value] : one.items()) {
+          if (name == "minimum" || name == "exclusiveMinimum") range.first = value.get<double>();
+          if (name == "maximum" || name == "exclusiveMaximum") range.second = value.get<double>();
+        }
+      };
+      if (!property.is_object()) continue;
+      narrow(property);
+      for (const char* either : {"anyOf", "oneOf"})
+        if (property.contains(either))
+          for (const Json& one : property[either])
+            if (one.is_object()) narrow(one);
+      bounds[key].insert(range);
+    }
+  for (const Json& child : at) gather_bounds(child, bounds);
+}
+
+Json schema_of_experiments() {
+  ReadOptions options;
+  options.solvers = solver_descriptions();
+  options.exact = exact_solutions();
+  return json_schema(plugins(), options);
+}
+
 /// As JSON writes it, numbers all as doubles.
 std::string as_value(const Json& value) {
   if (value.is_number()) return Json(value.get<double>()).dump();
@@ -39,11 +69,8 @@ std::string as_value(const Json& value) {
 }  // namespace
 
 TEST_CASE("the defaults on the page of the experiment file are those of the schema", "[docs]") {
-  ReadOptions options;
-  options.solvers = solver_descriptions();
-  options.exact = exact_solutions();
   std::map<std::string, std::set<std::string>> defaults;
-  gather_defaults(json_schema(plugins(), options), defaults);
+  gather_defaults(schema_of_experiments(), defaults);
 
   std::istringstream page(support::read_file(MPM_SOURCE_DIR "/docs/experiment_file.md"));
   const std::regex row(R"re(\| ((?:`[a-z_]+`(?:, )?)+) \| (`?)([^`|]+)`? \|.*)re"), name("`([a-z_]+)`");
@@ -67,4 +94,52 @@ TEST_CASE("the defaults on the page of the experiment file are those of the sche
     }
   }
   CHECK(compared > 35);
+}
+
+TEST_CASE("the ranges on the page of the experiment file are those of the schema", "[docs]") {
+  std::map<std::string, std::set<std::pair<double, double>>> bounds;
+  gather_bounds(schema_of_experiments(), bounds);
+  std::istringstream page(support::read_file(MPM_SOURCE_DIR "/docs/experiment_file.md"));
+  const std::regex row(R"re(\| `([a-z_]+)` \| [^|]* \| ([^|]*).*)re"),
+      range("([0-9.]+) to (?:below )?([0-9.]+)[:, ].*|(?:above|at least) ([0-9.]+), (?:at most|below) ([0-9.]+): .*");
+  std::smatch match, found;
+  int compared = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (!std::regex_match(line, match, row)) continue;
+    const auto known = bounds.find(match[1]);
+    // The range stands first, or behind what the key is: "C₁, 0 to 100".
+    const std::string meaning = std::regex_replace(match[2].str(), std::regex("^[^0-9,]{1,20}[₁₂]?, "), "");
+    if (known == bounds.end() || !std::regex_match(meaning, found, range)) continue;
+    const int from = found[1].matched ? 1 : 3;
+    INFO(line);
+    CHECK(known->second.count({std::stod(found[from]), std::stod(found[from + 1])}) == 1);
+    ++compared;
+  }
+  CHECK(compared >= 7);
+}
+
+TEST_CASE("the defaults that the page of the experiment file has in brackets are those of the schema", "[docs]") {
+  const Json schema = schema_of_experiments();
+  std::map<std::string, std::set<std::string>> defaults;
+  std::map<std::string, std::set<std::pair<double, double>>> bounds;
+  gather_defaults(schema, defaults), gather_bounds(schema, bounds);
+  const std::string page = support::read_file(MPM_SOURCE_DIR "/docs/experiment_file.md");
+  const std::regex in_brackets("`([a-z_]+)`(?: points| times| at t = 0)? \\(([0-9.]+)(?: rad|, up to ([0-9.]+))?[;)]");
+  int compared = 0;
+  for (std::sregex_iterator match(page.begin(), page.end(), in_brackets), end; match != end; ++match) {
+    const auto known = defaults.find((*match)[1]);
+    if (known == defaults.end()) continue;
+    INFO(match->str());
+    bool same = false;
+    for (const std::string& text : known->second)
+      if (const Json value = Json::parse(text); value.is_number())
+        same = same || value.get<double>() == std::stod((*match)[2]);
+    CHECK(same);
+    ++compared;
+    if (!(*match)[3].matched) continue;
+    bool most = false;
+    for (const auto& [low, high] : bounds[(*match)[1]]) most = most || high == std::stod((*match)[3]);
+    CHECK(most);
+  }
+  CHECK(compared >= 8);
 }

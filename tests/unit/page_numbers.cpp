@@ -1,5 +1,5 @@
-// Every number of the pages of studies is one of a study's figure, or given: tests/unit/fixtures/page_numbers holds for each
-// page its sentences, a # for each number, and where each number comes from:
+// Every number of the pages of studies and of the method is one of a study's figure, or given: tests/unit/fixtures/page_numbers
+// holds for each page its sentences, a # for each number, and where each number comes from:
 //   "only FIGURE: CELL | CELL"   the value of the one row of figures/studies/FIGURE.csv that has these cells
 //   "least …", "most …", "sum …", "first …", "last …", "count …"   the same of all rows that have them
 //   "front FIGURE: CELL | CELL"  how many of the rows that have the cells are on the figure's front
@@ -11,20 +11,30 @@
 // with it, "*A*" what holds it. FIGURE#2 takes the values of
 // another column than that of the figure. "words" are the sentences that state a quantity in words, each with a formula of such
 // values: "rounded" of it to a whole number "is" what the word says (3 for a third of one over it), or it "holds", which is 1.
-// "tables" are compared in study_pages.cpp, and "given" says of which numbers no run
-// decides, and why.
+// "tables" name the test that compares them, and "given" says of which numbers no run decides, and why. Where a group of
+// these is "from" files, each of its numbers stands in one of them: the experiment or the default that sets it, the test
+// that asserts it, or the formula that has it. Where it is "read by" a test, the test's text has the sentences and compares
+// what stands at each #, and a "test" is the case that compares them in another way.
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <sstream>
 
 #include "experiment/expression.hpp"
+#include "materials/cam_clay/cam_clay.hpp"
+#include "materials/drucker_prager/drucker_prager.hpp"
+#include "materials/mohr_coulomb/mohr_coulomb.hpp"
 #include "study/study.hpp"
 #include "support/catch.hpp"
 #include "support/csv.hpp"
+#include "support/literals.hpp"
 #include "support/page.hpp"
 
 using namespace mpm;
@@ -160,17 +170,39 @@ double value_of(const Json& source, const std::string& word = "") {
   return VectorExpression(terms, {"xyz", {}})(x, x, 0)[0];
 }
 
+/// Whether a text of C++ has the words in one string, however it is broken over lines.
+bool has_string(const std::string& file, const std::string& words) {
+  const std::string text = support::read_file(MPM_SOURCE_DIR "/" + file);
+  return std::regex_replace(text, std::regex("\"\\s+\""), "").find(words) != std::string::npos;
+}
+
+/// Whether tests have a case of this name, or the words begin with a file of tests that exists.
+bool names_a_test(const std::string& words) {
+  if (words.starts_with("tests/"))
+    return std::filesystem::exists(MPM_SOURCE_DIR "/" + words.substr(0, words.find(' ')));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(MPM_SOURCE_DIR "/tests"))
+    if (entry.path().extension() == ".cpp" &&
+        support::read_file(entry.path()).find("TEST_CASE(\"" + words.substr(0, words.find(" ("))) != std::string::npos)
+      return true;
+  return false;
+}
+
 }  // namespace
 
-TEST_CASE("every number of the pages of studies, in digits and in words, is one of a figure, or given", "[docs]") {
-  int pages = 0, numbers = 0, words = 0;
+TEST_CASE("every number of the listed pages, in digits and in words, is one of a figure, or given with where it stands",
+          "[docs]") {
+  int pages = 0, numbers = 0, words = 0, sources = 0;
   for (const auto& entry : std::filesystem::directory_iterator(MPM_SOURCE_DIR "/tests/unit/fixtures/page_numbers")) {
     const Json list = Json::parse(support::read_file(entry.path()));
     const std::string file = list["page"];
     INFO(file << ", numbers listed in " << entry.path().filename());
     Page page(file);
     if (list.contains("section")) page.keep_from_to(list["section"][0], list["section"][1]);
-    for (const Json& table : list.value("tables", Json::array())) page.leave_out_table_after(table["after"]);
+    for (const Json& table : list.value("tables", Json::array())) {
+      INFO(table["test"]);
+      CHECK(names_a_test(table["test"]));
+      page.leave_out_table_after(table["after"]);
+    }
     page.add_names(list["names"]);
     for (const Json& sentence : list["measured"]) {
       const std::string says = sentence["says"];
@@ -184,7 +216,27 @@ TEST_CASE("every number of the pages of studies, in digits and in words, is one 
       page.add_measured(says);
       numbers += static_cast<int>(printed.size());
     }
-    for (const Json& group : list["given"]) page.add_given(group["says"]);
+    for (const Json& group : list["given"]) {
+      page.add_given(group["says"]);
+      if (group.contains("test")) {
+        INFO(group["test"]);
+        CHECK(names_a_test(group["test"]));
+        ++sources;
+      }
+      if (group.contains("read by"))
+        for (const std::string says : group["says"]) {
+          INFO(says << " is not read by " << group["read by"]);
+          CHECK(has_string(group["read by"], says));
+          ++sources;
+        }
+      if (!group.contains("from")) continue;
+      for (const std::string says : group["says"])
+        for (const auto& printed : numbers_in(says, list["names"])) {
+          INFO(says << ": " << printed.value << " stands nowhere in " << group["from"]);
+          CHECK(stands_in(printed, group["from"]));
+          ++sources;
+        }
+    }
     for (const Json& sentence : list.value("words", Json::array())) {
       const std::string says = sentence["says"];
       INFO(says);
@@ -202,6 +254,7 @@ TEST_CASE("every number of the pages of studies, in digits and in words, is one 
   CHECK(pages > 0);
   CHECK(numbers > 10 * pages);
   CHECK(words > pages);
+  CHECK(sources > 0);
 }
 
 TEST_CASE("beside the command of a study stands how many runs it has", "[docs]") {
@@ -217,4 +270,149 @@ TEST_CASE("beside the command of a study stands how many runs it has", "[docs]")
     }
   }
   CHECK(calls >= 12);
+}
+
+TEST_CASE("every quantity in words of lesson 7 is listed beside the numbers of the page", "[docs]") {
+  const Json list = Json::parse(support::read_file(MPM_SOURCE_DIR "/tests/python/page_numbers/7_own_body.json"));
+  Page page(list["page"]);
+  page.add_names(list["names"]);
+  for (const Json& sentence : list["measured"]) page.add_given({sentence["says"]});
+  for (const Json& sentence : list["words"]) page.add_given({sentence["says"]});
+  for (const Json& group : list["given"]) page.add_given(group["says"]);
+  CHECK(page.words_of_nobody() == std::vector<std::string>{});
+}
+
+// docs/plugins.md is made of the plugins' manuals. Numbers of their prose stand in the plugin's own formulas, in the tests and
+// experiments that have them, or follow from them; those of the literature are listed.
+
+namespace {
+
+struct Manual {
+  std::string id, prose;
+};
+
+/// The manuals without their first line, formulas that stand apart, sources, and the lists of what the plugin declares.
+std::vector<Manual> manuals() {
+  std::istringstream page(mpm::support::read_file(MPM_SOURCE_DIR "/docs/plugins.md"));
+  std::vector<Manual> found;
+  bool in_prose = false, is_first = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line == "```text") {
+      found.emplace_back();
+      in_prose = is_first = true;
+    } else if (is_first) {
+      found.back().id = line.substr(0, line.find(' '));
+      is_first = false;
+    } else if (line.starts_with("Runs in:") || line == "```") {
+      in_prose = false;
+    } else if (in_prose && !line.starts_with("    ") && !line.starts_with("Source")) {
+      found.back().prose += line + "\n";
+    }
+  }
+  return found;
+}
+
+/// The headers of the plugin: its formulas and defaults, without its manual.
+std::vector<std::string> own_files(const std::string& id) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  for (const auto& kind : fs::directory_iterator(MPM_SOURCE_DIR "/modules"))
+    if (fs::is_directory(kind.path() / id))
+      for (const auto& file : fs::directory_iterator(kind.path() / id))
+        if (file.path().extension() == ".hpp")
+          files.push_back("modules/" + kind.path().filename().string() + "/" + id + "/" +
+                          file.path().filename().string());
+  return files;
+}
+
+/// Tests, experiments and shared formulas that have a manual's numbers.
+const std::map<std::string, std::vector<std::string>> elsewhere{
+    {"bspline_cubic", {"tests/verification/critical_step.cpp"}},
+    {"approach", {"tests/verification/detections.cpp"}},
+    {"fixed_offset", {"experiments/studies/resting_gap.json"}},
+    {"newtonian_fluid", {"modules/kernel/lanes.hpp", "modules/kernel/equation_of_state.hpp", "tests/cli/papers.cpp"}},
+    {"snow", {"tests/conformance/snow_paths.cpp"}}};
+
+/// The papers' own numbers, and what everybody knows of water.
+const std::map<std::string, std::vector<double>> published{
+    {"johnson_cook", {292, 0.31, 0.025, 1.09, 1356, 4340, 792, 510, 0.26, 0.014, 1.03, 1793}},
+    {"inviscid_fluid", {2.2}},
+    {"newtonian_fluid", {2.2}}};
+
+/// The least and the largest share of its fracture energy that a bar of quadratic B-splines dissipates, as the study has it.
+std::vector<double> dissipated_by_cracks() {
+  double least = 2, most = 0;
+  for (const auto& row : mpm::support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/damage_cells.csv"))
+    if (row.size() > 4 && row[0] == "shape: quadratic B-spline" && row[2] == "computed")
+      least = std::min(least, std::stod(row[4])), most = std::max(most, std::stod(row[4]));
+  return {least, most};
+}
+
+/// What follows from the plugin's formulas.
+std::vector<double> follows(const std::string& id) {
+  const double degrees = std::numbers::pi / 180, nu = 0.3, bulk = 1 / 1.2,
+               shear = 1 / 2.6;  // of a Young's modulus of 1
+  const double elastic = bulk + 4 * shear / 3;
+  if (id == "bspline_cubic")
+    return {27, 16, 1 / std::sqrt(2)};  // nodes of quadratic and cubic splines, the centre's limit
+  if (id == "cpdi") return {27};
+  if (id == "mls") return {32};  // f^2 (1 - f)^2 / 2 at f = 1/2
+  // (powers of a quadratic spline)^2 - 1 - 2, and so on: what the affine field is not, times the components.
+  if (id == "polypic") return {4 * 3, (9 - 3) * 2, 27 - 4, (27 - 4) * 3, 16 - 3, 64 - 4};
+  if (id == "fmpm") return {1 / std::sqrt(2), 1 / std::sqrt(8)};
+  if (id == "ideal_gas") {
+    const double z = std::sqrt(3) * 0.5;  // of the default of C1
+    return {z + std::sqrt(z * z + 1), std::floor(std::log(std::numeric_limits<float>::max()))};
+  }
+  if (id == "snow") return {1 - std::log(100) / 10, 1 + std::log(100) / 10};  // exp(xi (1 - J_P)) with the default xi
+  if (id == "newtonian_fluid") return {1 - 0.9 / 1.489};
+  if (id == "damage") {
+    std::vector<double> shares = dissipated_by_cracks();
+    shares.push_back(0.8 / (1 - 1. / 3));  // where the first line of the two ends, over how far it falls
+    return shares;
+  }
+  if (id == "cam_clay") {
+    const CamClay::Hardening<double> hardening(0, 1, 1.2, 0, shear / bulk);
+    return {hardening.at};
+  }
+  if (id == "drucker_prager") {
+    const DruckerPrager::Constants<double> sand({1, nu, 1, 30 * degrees, 0, 1});
+    return {100 * (sand.longitudinal / elastic - 1)};
+  }
+  if (id == "mohr_coulomb") {
+    const MohrCoulomb::Constants<double> soil({1, nu, 1, 30 * degrees, 0, 0});
+    return {100 * (soil.longitudinal / elastic - 1)};
+  }
+  return {};
+}
+
+bool is_one_of(const PrintedNumber& printed, const std::vector<double>& numbers) {
+  return std::any_of(numbers.begin(), numbers.end(), [&](double number) { return number == printed.rounded(); });
+}
+
+}  // namespace
+
+// Of one digit alone are numbers that stand everywhere.
+TEST_CASE("every number of two digits or more in the manuals stands in the plugin's formulas, or in what has it",
+          "[docs]") {
+  const std::vector<std::string> names{"[23]-D", "(19|20)[0-9]{2}", "(FMPM|XPIC|CPDI|B)[0-9(]+",
+                                       "[A-Z]?[0-9]+:[0-9-]+"};
+  int compared = 0;
+  std::set<std::string> with_numbers;
+  for (const Manual& manual : manuals()) {
+    std::vector<std::string> files = own_files(manual.id);
+    REQUIRE(!files.empty());
+    if (elsewhere.count(manual.id))
+      files.insert(files.end(), elsewhere.at(manual.id).begin(), elsewhere.at(manual.id).end());
+    const std::vector<double> known = published.count(manual.id) ? published.at(manual.id) : std::vector<double>{};
+    for (const PrintedNumber& printed : numbers_in(manual.prose, names)) {
+      const std::string digits = std::regex_replace(std::to_string(printed.value), std::regex("^[0.]*|[0.]*$|\\."), "");
+      if (digits.size() < 2 || printed.half_unit == 0) continue;
+      INFO(manual.id << ": " << printed.value);
+      CHECK((stands_in(printed, files) || is_one_of(printed, follows(manual.id)) || is_one_of(printed, known)));
+      ++compared, with_numbers.insert(manual.id);
+    }
+  }
+  CHECK(compared > 50);
+  CHECK(with_numbers.size() > 15);
 }
