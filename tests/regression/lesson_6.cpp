@@ -55,7 +55,10 @@ TEST_CASE("lesson 6: every number of the page is read by a test or given by the 
                   "it is at 220 K. The block starts at 300 K", "falls from 20 kPa to 50 Pa",
                   "The wax conducts 3000 W/(m K)", "stays at 330 K until it has taken its latent heat, 20 kJ/kg",
                   "(Carslaw & Jaeger 1959, sec. 11.2)", "| cells of 10 mm | cells of 5 mm |"});
+  // Quantities in words: of wax, which conducts 0.3 W/(m K) or so, and of the method.
+  page.add_given({"ten thousand times too much", "from one half on it has the parameters"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
+  CHECK(page.words_of_nobody() == std::vector<std::string>{});
 }
 
 TEST_CASE("lesson 6: the block melts, slumps and is frozen again", "[lesson][heat]") {

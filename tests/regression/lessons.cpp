@@ -51,8 +51,15 @@ TEST_CASE("lessons 1 and 2: every number of the pages is read by a test or given
        "bar by 5 % and has a period of 0.1 s. The wave alone moves a particle by 8 mm; the nearest cell face",
        "is 12.5 mm away", "every particle crosses a face every 0.1 s", "jumps from +1/h to −1/h",
        "stretched to 1.05 at most", ", and then 5. Slow flight"});
-  CHECK(first.numbers_of_nobody() == std::vector<std::string>{});
-  CHECK(second.numbers_of_nobody() == std::vector<std::string>{});
+  // Quantities in words: what the scenes set, and what follows from it.
+  first.add_given({"*worse*: twice as many averages"});
+  second.add_given({"The third run stops the flight", "after five periods and a quarter",
+                    "more than one per cent out of nothing", "Cells half as large are crossed twice as often",
+                    "Each kick is half as large"});
+  for (const Page* page : {&first, &second}) {
+    CHECK(page->numbers_of_nobody() == std::vector<std::string>{});
+    CHECK(page->words_of_nobody() == std::vector<std::string>{});
+  }
 }
 
 TEST_CASE("lesson 1: PIC stops the disc, FLIP keeps most of its spin, APIC all", "[lesson]") {

@@ -110,11 +110,20 @@ TEST_CASE("lessons 3 to 5: every number of the pages is read by a test or given 
                    "After 0.2 s the upper block should be ½ · 2 g · (0.2 s)² = 0.4 m higher",
                    "(3 − 2) weights pull on two blocks, that is g / 2, and ½ · g / 2 · (0.2 s)² = 0.1 m"});
   fourth.add_given({"Order 1 is v = v⁺", "for orders 1, 2, 4, 8", "**Order 1 is PIC**", "only 1/√k of PIC's",
-                    "with a step of 10 ms order 2 runs well, and order 8 turns", "Order 4 costs", "), and at order 8",
+                    "with a step of 10 ms order 2 runs well, and order 8 turns",
+                    "Order 4 costs eight times what FLIP costs here", "), and at order 8",
                     "Order k makes k − 1 gathers", "Half the step at order 1", "at order 8. - Filter"});
   fifth.add_given({"starts with 8 m/s", "from 0.5 m out to 1.5 m and back", "with 400 finite differences",
                    "centre of mass at 0.77 s |", "reaches up to 16 nodes in 2-D"});
-  for (const Page* page : {&third, &fourth, &fifth}) CHECK(page->numbers_of_nobody() == std::vector<std::string>{});
+  // Quantities in words: what shape functions and the method are, and what the scene sets.
+  third.add_given({"A quadratic B-spline reaches one and a half cells", "reach one cell instead of one and a half"});
+  fourth.add_given({"over its neighbourhood twice", "**The cost grows twice.**",
+                    "has fallen to a hundredth of the first", "the noise removed in the tenth"});
+  fifth.add_given({"It stretches to three times its length", "**bspline_quadratic**: up to one and a half cells"});
+  for (const Page* page : {&third, &fourth, &fifth}) {
+    CHECK(page->numbers_of_nobody() == std::vector<std::string>{});
+    CHECK(page->words_of_nobody() == std::vector<std::string>{});
+  }
 }
 
 TEST_CASE("lesson 3: one field squeezes the discs before they touch, contact waits", "[lesson]") {
