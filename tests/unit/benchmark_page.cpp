@@ -185,14 +185,3 @@ TEST_CASE("the numbers of another processor and of the laws are those of its tab
                   "at most 0.9 of Neo-Hookean", "at most 1.35 and does", "at least 2.3 times Neo-Hookean"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
 }
-
-TEST_CASE("the page of decisions has the instructions of the ledger that the benchmarks' tables have", "[docs]") {
-  const Page page("docs/design/decisions.md");
-  const auto instructions = [](const std::string& scene) {
-    return number("What is paid", {scene}, "instructions a particle-step");
-  };
-  const auto printed = page.read("(`./mpm bench required`: # beside # a particle)");
-  CHECK(instructions("+ ledger") == printed[0].rounded());
-  CHECK(instructions("base") == printed[1].rounded());
-  CHECK(instructions("+ ledger, not due") == page.read("(# in a step that is not due)").front().rounded());
-}

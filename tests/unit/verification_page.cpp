@@ -92,6 +92,10 @@ std::vector<Row> rows_of_the_page() {
     if (const auto table = of_tables.find(heading); table != of_tables.end() && row.files.empty())
       row.files = table->second;
     if (const auto file = more.find(row.name); file != more.end()) row.files.push_back(file->second);
+    for (std::size_t k = 0, named = row.files.size(); k < named;
+         ++k)  // what a test shares with another stands in a header
+      if (const std::string header = fs::path(row.files[k]).replace_extension(".hpp"); fs::exists(source / header))
+        row.files.push_back(header);
     rows.push_back(row);
   }
   return rows;
