@@ -68,11 +68,11 @@ inline Mix warm_mix(int dimension, const std::string& transfer) {
   return mix;
 }
 
-/// Scenes that launch between them every kernel that there is (kernels/kernels.hpp): all plugins, temperature with melting,
-/// loads at points, springs, grips, boxes of conditions, moving and periodic walls, both filters' loops, contact, by
-/// particles too, the ledger, rings, polynomials, lists, domains, the orders of the stress update, the mean dilation, and deterministic sums.
-inline std::vector<Mix> every_kernel(int dimension) {
-  std::vector<Mix> mixes = every_plugin_once(dimension);
+/// What a scene may hold beside plugins, in few scenes: temperature with melting, loads at points, springs, grips, boxes of
+/// conditions, moving and periodic walls, both filters' loops, contact, by particles too, the ledger, rings, the orders of
+/// the stress update, the mean dilation, and deterministic sums.
+inline std::vector<Mix> every_addition(int dimension) {
+  std::vector<Mix> mixes;
   const bool flat = dimension == 2;
   for (const std::string transfer : {R"({"type": "flip"})", R"({"type": "asflip"})"})
     mixes.push_back(warm_mix(dimension, transfer));
@@ -119,6 +119,14 @@ inline std::vector<Mix> every_kernel(int dimension) {
     rings.filter = R"({"type": "xpic", "order": 2})", rings.stress_update = "modified_last";
     mixes.push_back(rings);
   }
+  return mixes;
+}
+
+/// Scenes that launch between them every kernel that there is (kernels/kernels.hpp): these, and all plugins, with which come
+/// polynomials, lists and domains.
+inline std::vector<Mix> every_kernel(int dimension) {
+  std::vector<Mix> mixes = every_plugin_once(dimension);
+  for (const Mix& mix : every_addition(dimension)) mixes.push_back(mix);
   return mixes;
 }
 

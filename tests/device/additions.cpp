@@ -1,0 +1,51 @@
+// What a scene may hold beside plugins, all in few scenes: whatever a run of one says is what the reference backend says.
+
+#include "device/covering.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+/// Forces and moments on all supports in the last step, and the impulses since the run began.
+std::vector<double> reaction_values(const Simulation& simulation) {
+  std::vector<double> values;
+  for (const Reaction& reaction : simulation.backend().reactions())
+    for (const Vector3& vector : {reaction.force, reaction.moment, reaction.impulse})
+      values.insert(values.end(), vector.begin(), vector.end());
+  return values;
+}
+
+/// Checks a scene in double precision; what is compared beside the bodies and the ledger is relative to its own size.
+void check(const Mix& mix) {
+  if (!is_chosen_check()) return;
+  INFO(mix.name());
+  std::vector<std::string> overrides = mix.overrides;
+  std::erase(overrides, deterministic_sums);
+  for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
+  Scene reference(mix.text(), overrides);
+  const double content = heat_content(reference);
+  while (!reference.simulation.finished()) reference.simulation.step();
+  DeviceScene found(mix.text(), "double", {}, mix.overrides);
+  found.run();
+  const double epsilon = epsilon_of("double"), bound = device_bound(mix) * epsilon;
+  REQUIRE(found.simulation.steps() == reference.simulation.steps());
+  CHECK(scene_difference(reference, found) <= bound);
+  if (content > 0) CHECK(difference(heat_ledger_values(reference), heat_ledger_values(found), content) <= bound);
+  const std::vector<double> reactions = reaction_values(reference.simulation);
+  REQUIRE(reactions.empty() != (mix.more.find("reactions") != mix.more.npos));
+  if (!reactions.empty())
+    CHECK(difference(reactions, reaction_values(found.simulation), size_of(reactions)) <= 10 * bound);
+  const Totals& start = reference.metrics.initial();
+  const double force = start.mass * 1.5 / reference.simulation.last_time_step(), norm = std::sqrt(start.mass) * 1.5;
+  CHECK(difference(contact_values(reference, force), contact_values(found, force), 1.0) <= bound);
+  CHECK(difference(filter_values(reference, norm), filter_values(found, norm), 1.0) <= bound);
+}
+
+}  // namespace
+
+TEST_CASE("all that a scene may hold beside plugins does on the host-run device what it does on the reference backend",
+          "[device]") {
+  for (const int dimension : {2, 3})
+    for (const Mix& mix : every_addition(dimension)) check(mix);
+}
