@@ -130,6 +130,37 @@ TEST_CASE("mistakes at the extremes are named") {
   CHECK(extremes_of(Plugin{&creeping, "test"}, 3, 2000).back().drift > 100);
 }
 
+TEST_CASE("the page of the material point has the speeds of waves at rest, and what of it crushed metals keep",
+          "[docs]") {
+  const Registry registry = Registry::from_folders(Registry::default_folders());
+  const app::BenchSuite suite(registry, true);
+  const Page page("docs/material_point.md");
+  double least = 1e300, most = 0;
+  for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL)) {
+    const Component material = suite.material(*plugin);
+    const double speed = drive::MaterialPoint(material, 3).look().wave_speed;
+    const std::string law(plugin->id());
+    INFO(law << ": " << speed << " m/s");
+    if (law == "ideal_gas") {
+      CHECK(speed == page.read("`ideal_gas` has # m/s at rest").front().rounded());
+      continue;
+    }
+    least = std::min(least, speed), most = std::max(most, speed);
+    if (law != "johnson_cook" && !law.starts_with("von_mises")) continue;
+    const auto rows = extremes_of(*plugin, 3, 1);
+    const auto pressed =
+        std::find_if(rows.begin(), rows.end(), [](const drive::Extreme& row) { return row.name == "pressed evenly"; });
+    REQUIRE(pressed != rows.end());
+    CHECK(pressed->end.wave_speed / speed ==
+          page.read("those of the metals come to # of their speed at rest").front().rounded());
+  }
+  // As tens around all of them.
+  const auto range = page.read("waves are about as fast as in rubber of 400 kPa, # to # m/s");
+  INFO(least << " to " << most << " m/s");
+  CHECK(10 * std::floor(least / 10) == range[0].value);
+  CHECK(10 * std::ceil(most / 10) == range[1].value);
+}
+
 TEST_CASE("the page of the material point has what mpm drive every says", "[docs]") {
   const Folder folder;
   const Result result = call(folder, {"drive", "every", "--extremes", "--cycles", "1000"});
