@@ -95,7 +95,13 @@ TEST_CASE("outputs that are not due cost a handful of instructions to look at th
   INFO(between.name << ": " << between.instructions->own << " instructions, the base scene " << base.instructions->own);
   CHECK(std::abs(between.instructions->own - base.instructions->own) <= 4 * handful * base.steps);
   // The counter does see what is asked for.
-  CHECK(counted("+ ledger").instructions->own > base.instructions->own + 1000 * base.steps);
+  const RequiredRow ledger = counted("+ ledger");
+  CHECK(ledger.instructions->own > base.instructions->own + 1000 * base.steps);
+  // "nearly triples the instructions of a step" (docs/design/decisions.md)
+  const double times = static_cast<double>(ledger.instructions->own) / static_cast<double>(base.instructions->own);
+  INFO("the ledger makes it " << times << " times as many");
+  CHECK(times > 2.5);
+  CHECK(times < 3);
 }
 
 TEST_CASE("a choice adds what it declares and nothing else") {
