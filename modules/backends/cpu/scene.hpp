@@ -73,15 +73,11 @@ struct Scene {
     stress_by_affine = has(MPM_STRESS_BY_AFFINE) && !moment_is_gradient;
   }
   bool has(unsigned trait) const { return (traits & trait) != 0; }
-  /// D_a of one axis (m^2) for a particle at `offset` cells from its stencil's first node; not for moments a particle.
-  double second_moment(double offset) const {
-    return moment_is_gradient ? offset * (1 - offset) * domain.cell_size * domain.cell_size : 1 / inverse_moment;
-  }
 
   const Experiment& experiment;
   const Plan& plan;
   std::unique_ptr<support::Team> team;  ///< threads that share the loops
-  int threads = 1;                      ///< number of threads of the team
+  int threads;                          ///< number of threads of the team
   Domain domain;
   bool axisymmetric = false;  ///< x is the radius
 

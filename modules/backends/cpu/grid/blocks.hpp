@@ -45,12 +45,6 @@ constexpr std::array<int, 3> node_at(const BlockCoordinates& block, int local) {
   return node;
 }
 
-/// The number of the neighbour at an offset (each of dx, dy, dz is -1, 0 or 1).
-template <int D>
-constexpr int neighbour_index(int dx, int dy, int dz) {
-  return D == 3 ? ((dx + 1) * 3 + dy + 1) * 3 + dz + 1 : (dx + 1) * 3 + dy + 1;
-}
-
 /// An open-addressing map from block coordinates to a number.
 class BlockTable {
  public:

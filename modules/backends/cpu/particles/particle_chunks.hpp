@@ -484,7 +484,7 @@ double ParticleStep<D, T, Components>::kinetic_energy(const Chunk& chunk, const 
       const L offset = load(work.offset, a, p);
       return offset * (T(1) - offset);
     });
-  return energy_of_columns(static_cast<T>(scene_.second_moment(0)), [](int, int) { return T(1); });
+  return energy_of_columns(static_cast<T>(1 / scene_.inverse_moment), [](int, int) { return T(1); });
 }
 
 }  // namespace mpm::cpu

@@ -248,7 +248,7 @@ T ParticleStep<D, T, Components>::stress_scale(const Chunk& chunk, double factor
   return static_cast<T>(-factor * chunk.body.volume * (of_all ? scene_.inverse_moment : 1.0));
 }
 
-/// Puts -factor V0 tau D^-1 into A (added or set), or -factor V0 tau into S.
+/// Puts -factor V0 tau D^-1 into A (added where a particle has a D of its own, or set), or -factor V0 tau into S.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Work& work, double factor, bool add) {
   const bool by_affine = scene_.stress_by_affine, of_particle = by_affine && scene_.moment_of_particle;
@@ -267,10 +267,7 @@ void ParticleStep<D, T, Components>::stress_coefficients(const Chunk& chunk, Wor
         continue;
       }
       const T* const tau = work.stress + Sym<D, T>::index(i, j) * chunk_size<T>;
-      if (by_affine && add)
-        for (int p = 0; p < chunk.end; ++p) target[p] += scale * tau[p];
-      else
-        for (int p = 0; p < chunk.end; ++p) target[p] = scale * tau[p];
+      for (int p = 0; p < chunk.end; ++p) target[p] = scale * tau[p];
     }
 }
 

@@ -91,10 +91,8 @@ MPM_ROW_INLINE Row<T, K> repeated(const T* quad) {
     const Quad<T> q = *reinterpret_cast<const Quad<T>*>(quad);
     if constexpr (R::nodes_a_vector == 1)
       first = (typename R::Vector)q;
-    else if constexpr (R::nodes_a_vector == 2)
+    else  // two nodes; the case of four is above
       first = (typename R::Vector)__builtin_shufflevector(q, q, 0, 1, 2, 3, 0, 1, 2, 3);
-    else
-      first = (typename R::Vector)__builtin_shufflevector(q, q, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
   }
   for (int i = 1; i < R::vectors; ++i) row.v[i] = first;
   return row;
