@@ -804,6 +804,18 @@ TEST_CASE("parity of weight in 3-D where no ledger is kept", "[parity]") {
   both.steps(2), both.check_alike();
 }
 
+// Columns of blocks take turns by colours, of which every second pair along y has others than those beside it.
+TEST_CASE("parity of a bar in 3-D that crosses columns of blocks of every colour", "[parity]") {
+  BothBackends both(
+      R"J({"title": "bar", "dimension": 3, "grid": {"cell_size": 0.1, "domain": [[0, 0, 0], [1.2, 4, 0.4]],
+      "boundaries": {"all": "free"}}, "shape": {"type": "linear"}, "transfer": {"type": "apic"}, "materials": {"m":
+      {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}}, "bodies": [{"name": "a",
+      "material": "m", "geometry": {"type": "box", "lower": [0.1, 0.1, 0.1], "upper": [1.1, 3.9, 0.2]},
+      "particles_per_cell_axis": 1, "velocity": ["y", "0.3*sin(x)", "0.2*y*x"]}],
+      "solver": {"time_step": 0.005, "end_time": 1}})J");
+  both.steps(2), both.check_alike();
+}
+
 TEST_CASE("parity of a frozen body beside one that moves", "[parity]") {
   GridScene scene;
   scene.bodies = body_of("a", {box_of("[0.2, 0.2]", "[0.5, 0.5]")}, "[0.6, 0.1]") + ", " +

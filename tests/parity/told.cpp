@@ -34,7 +34,8 @@ void note_capacity(const void* parameters, const mpm_list_batch* batch) {
   told.insert(batch->capacity);
   shape_asked->evaluate_list[precision][D - 2](parameters, batch);
 }
-/// Adds a node without weight to each list, a cell farther along x than any other.
+/// Adds a node without weight to each list, as many cells farther along x than any other.
+template <int cells>
 void reach_farther(const void* parameters, const mpm_list_batch* batch) {
   shape_asked->evaluate_list[MPM_LANES_DOUBLE][0](parameters, batch);
   for (std::uint32_t lane = 0; lane < batch->count; ++lane) {
@@ -42,8 +43,8 @@ void reach_farther(const void* parameters, const mpm_list_batch* batch) {
     const auto node = [&](std::uint32_t k, std::uint32_t axis) -> std::int32_t& {
       return batch->node[(k * 2 + axis) * batch->stride + lane];
     };
-    node(added, 0) = node(0, 0) + 1, node(added, 1) = node(0, 1);
-    for (std::uint32_t k = 1; k < added; ++k) node(added, 0) = std::max(node(added, 0), node(k, 0) + 1);
+    node(added, 0) = node(0, 0) + cells, node(added, 1) = node(0, 1);
+    for (std::uint32_t k = 1; k < added; ++k) node(added, 0) = std::max(node(added, 0), node(k, 0) + cells);
     static_cast<double*>(batch->weight)[added * batch->stride + lane] = 0;
     for (std::uint32_t axis = 0; batch->gradient && axis < 2; ++axis)
       static_cast<double*>(batch->gradient)[(added * 2 + axis) * batch->stride + lane] = 0;
@@ -107,6 +108,21 @@ void run(const Experiment& experiment) {
   told.clear();
   Simulation simulation(experiment, backend_factory(1));
   for (int step = 0; step < 2; ++step) simulation.step();
+}
+
+/// Runs one long particle of "cpdi", whose lists are of a table without boxes of nodes, which would be taken for them.
+void run_long(const mpm_shape& table) {
+  Noting noting(*plugins().find(MPM_SHAPE, "cpdi"), &table);
+  noting.drop_extensions();
+  Experiment experiment = experiment_from(R"J({"title": "long", "dimension": 2, "grid": {"cell_size": 1, "domain":
+      [[0, 0], [48, 8]], "boundaries": {"all": "free"}}, "shape": {"type": "cpdi"}, "transfer": {"type": "apic"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e-9, "poisson_ratio": 0, "density": 1}}, "bodies":
+      [{"name": "a", "material": "m", "geometry": {"type": "box", "lower": [20, 4], "upper": [21, 5]},
+      "particles_per_cell_axis": 1, "initial_deformation_gradient": {"xx": 20}, "velocity": [0, 0.1]}],
+      "solver": {"time_step": 1, "end_time": 9}})J",
+                                          {"/backend=cpu", "/precision=double"});
+  experiment.shape.plugin = &noting.plugin;
+  run(experiment);
 }
 
 }  // namespace
@@ -178,22 +194,19 @@ TEST_CASE("a shape is told how many nodes its own lists hold at most", "[parity]
 
 // The particle's farthest corner lies in the last cell of the block after the neighbour of its own.
 TEST_CASE("the grid has the nodes that lists reach beyond corners", "[parity]") {
-  const Plugin& shape = *plugins().find(MPM_SHAPE, "cpdi");
-  shape_asked = &shape.shape();
+  shape_asked = &plugins().find(MPM_SHAPE, "cpdi")->shape();
   mpm_shape table = *shape_asked;
-  table.evaluate_list[MPM_LANES_DOUBLE][0] = reach_farther;
+  table.evaluate_list[MPM_LANES_DOUBLE][0] = reach_farther<1>;
   ++table.capacity[0], ++table.reach;
-  Noting noting(shape, &table);
-  noting.drop_extensions();  // the boxes of nodes, which would be taken for the lists
-  Experiment experiment = experiment_from(R"J({"title": "long", "dimension": 2, "grid": {"cell_size": 1, "domain":
-      [[0, 0], [48, 8]], "boundaries": {"all": "free"}}, "shape": {"type": "cpdi"}, "transfer": {"type": "apic"},
-      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e-9, "poisson_ratio": 0, "density": 1}}, "bodies":
-      [{"name": "a", "material": "m", "geometry": {"type": "box", "lower": [20, 4], "upper": [21, 5]},
-      "particles_per_cell_axis": 1, "initial_deformation_gradient": {"xx": 20}, "velocity": [0, 0.1]}],
-      "solver": {"time_step": 1, "end_time": 9}})J",
-                                          {"/backend=cpu", "/precision=double"});
-  experiment.shape.plugin = &noting.plugin;
-  CHECK_NOTHROW(run(experiment));
+  CHECK_NOTHROW(run_long(table));
+}
+
+TEST_CASE("a shape whose lists reach farther than it declares is named", "[parity][failure]") {
+  shape_asked = &plugins().find(MPM_SHAPE, "cpdi")->shape();
+  mpm_shape table = *shape_asked;
+  table.evaluate_list[MPM_LANES_DOUBLE][0] = reach_farther<15>;
+  ++table.capacity[0];
+  CHECK_THROWS_WITH(run_long(table), "shape \"cpdi\" gave a node beyond its declared reach");
 }
 
 // What is smaller is rounding, whose growth says nothing. The second pass doubles what the first has left.
