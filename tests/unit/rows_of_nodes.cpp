@@ -21,8 +21,8 @@ struct alignas(64) Numbered {
 };
 
 template <class T, int K>
-std::array<T, Row<T, K>::scalars> scalars_of(const Row<T, K>& row) {
-  std::array<T, Row<T, K>::scalars> scalars{};
+std::array<T, mpm::cpu::Row<T, K>::scalars> scalars_of(const mpm::cpu::Row<T, K>& row) {
+  std::array<T, mpm::cpu::Row<T, K>::scalars> scalars{};
   store_row<T, K>(scalars.data(), row);
   return scalars;
 }
@@ -85,7 +85,7 @@ TEMPLATE_TEST_CASE("quads become components and components quads, each particle'
 
 TEMPLATE_TEST_CASE("a row holds its nodes' scalars, and is added and multiplied one by one", "", float, double) {
   for_each_width([]<int K> {
-    using R = Row<TestType, K>;
+    using R = mpm::cpu::Row<TestType, K>;
     CHECK(R::nodes == (K == 2 ? 2 : 4));
     CHECK(R::scalars == 4 * R::nodes);
     CHECK(R::vectors * R::width == R::scalars);
@@ -112,7 +112,7 @@ TEMPLATE_TEST_CASE("a row holds its nodes' scalars, and is added and multiplied 
 TEMPLATE_TEST_CASE("a quad is put at each node of a row, or one of its scalars on all of each node", "", float,
                    double) {
   for_each_width([]<int K> {
-    using R = Row<TestType, K>;
+    using R = mpm::cpu::Row<TestType, K>;
     const Numbered<TestType, 8> quad;
     const auto repeats = scalars_of<TestType, K>(repeated<TestType, K>(quad.at)),
                spreads = scalars_of<TestType, K>(spread<TestType, K>(quad.at)),
@@ -128,7 +128,7 @@ TEMPLATE_TEST_CASE("a quad is put at each node of a row, or one of its scalars o
 
 TEMPLATE_TEST_CASE("the nodes of rows come side by side in the rows' order", "", float, double) {
   const auto check = []<int K> {
-    using R = Row<TestType, K>;
+    using R = mpm::cpu::Row<TestType, K>;
     constexpr int count = R::nodes_a_vector;
     const Numbered<TestType, count * R::scalars> numbers;
     R rows[count];
