@@ -101,6 +101,9 @@ inline std::vector<Mix> every_addition(int dimension) {
                 of("[2e3, 1e3]", "[2e3, 1e3, 500]") + R"J(, "damping": )J" + of("[50, 100]", "[50, 100, 0]") +
                 R"J(}], "node_conditions": [{"type": "slip", "axis": "y", "lower": )J" +
                 of("[0.2, 0.3]", "[0.2, 0.1, 0.1]") + R"J(, "upper": )J" + of("[0.3, 0.4]", "[0.3, 0.2, 0.4]") +
+                R"J(}, {"type": "prescribed", "lower": )J" + of("[0.7, 0.3]", "[0.5, 0.2, 0.3]") + R"J(, "upper": )J" +
+                of("[0.8, 0.5]", "[0.6, 0.4, 0.4]") + R"J(, "velocity": )J" +
+                of("[\"1.1-3*t*y\", \"0.3*x-0.12\"]", "[\"1.1-3*t*y\", \"0.3*x-0.12\", \"0.2*x*z\"]") +
                 R"J(}], "grips": [{"body": "a", "where": )J" +
                 beyond(of("[0.22, 0]", "[0.22, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) + R"J(, "velocity": )J" +
                 of("[\"1.2+t\", null]", "[\"1.2+t\", null, \"X\"]") + "}]";
