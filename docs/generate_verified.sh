@@ -97,10 +97,11 @@ yet* has not been run for this page. Not here are the
 tests in Python (`ctest --test-dir build -R python`), which execute [two](python.md) [pages](lessons/7_own_body.md) and compare
 what comes out with what stands there.
 
-Each entry of CTest compares its cases with their rows, and fails where a distance or a share of a bound is off by more than a
-factor of four. Rounding differs between compilers and machines: distances below 10⁻⁹ count as 10⁻⁹, and shares of a bound
-below 0.05 as 0.05. Numbers of assertions are those of the machine of the run, as some cases go over the lanes of its registers
-or its threads. A case that says that it left something out on this machine is not compared, nor is a build with sanitizers.
+Each entry of CTest compares its cases with their rows, and fails where a distance or a share of a bound is more than four times
+as large as the row says. Rounding differs between compilers and machines: distances below 10⁻⁹ count as 10⁻⁹, and shares of a
+bound below 0.05 as 0.05. Numbers of assertions are those of the machine of the run, as some cases go over the lanes of its
+registers or its threads. A case that says that it left something out on this machine is not compared, nor is a build with
+sanitizers. Bounds of times have no share here.
 
 To run the cases of a file: `ctest --test-dir build -R verification.bar` for `tests/verification/bar.cpp`.
 

@@ -91,10 +91,11 @@ MPM_HD bool box_holds(int type, int axis, int side, int given, int component, S 
          (type == wall_prescribed && (given >> component & 1));
 }
 
-/// Whether a grip holds a node: at least half of the node's mass is of its particles.
+/// Whether a grip holds a node: at least half of the node's mass is of its particles. Half of it counts as half however its
+/// sum is rounded: rows of particles often lie evenly about a node.
 template <class S>
 MPM_HD bool grip_holds(S mass_of_grip, S mass) {
-  return mass_of_grip > S(0) && S(2) * mass_of_grip >= mass;
+  return mass_of_grip > S(0) && S(2) * mass_of_grip >= S(1 - 1e-5) * mass;
 }
 
 }  // namespace mpm

@@ -44,7 +44,7 @@ TEST_CASE("0: a run whose expectations hold") {
   REQUIRE(summary["expect"].size() == 1);
   CHECK(summary["expect"][0]["held"] == true);
   CHECK(summary["performance"]["wall_seconds"].get<double>() > 0);
-  CHECK(summary["performance"]["wall_seconds"].get<double>() < result.seconds);
+  CHECK((summary["performance"]["wall_seconds"].get<double>() < result.seconds));
   CHECK(summary["performance"]["peak_memory"].get<double>() > 1e6);
   CHECK(summary["performance"]["peak_memory"].get<double>() < 1e9);
 }
@@ -377,7 +377,7 @@ TEST_CASE("2: a scene too large for memory is refused at once, with the estimate
   const Result result = call(folder, {"run", "scene.json", "--out", "run"});
   INFO(result.err);
   CHECK(result.code == 2);
-  CHECK(result.processor_seconds < 5);
+  CHECK((result.processor_seconds < 5));
   CHECK(has(result.err, "/grid/cell_size: the scene needs about"));
   CHECK(has(result.err, "GB of state"));
   CHECK(has(result.err, "are free; use larger cells"));

@@ -176,7 +176,7 @@ TEST_CASE("on demand: the time of a compiler is no time of the run") {
   spill(part.launcher, "sleep 4\n" + slurp(part.launcher));
   CHECK(part.call("run", ball(), {"--out", "run"}).code == 0);
   CHECK(has(slurp(part.asked), "backend_cpu_2_double"));
-  CHECK(json_in(part.folder / "run/summary.json")["performance"]["wall_seconds"] < 4);
+  CHECK((json_in(part.folder / "run/summary.json")["performance"]["wall_seconds"] < 4));
 }
 
 TEST_CASE("on demand: every shipped experiment and study names the plugins that it uses") {

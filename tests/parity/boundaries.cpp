@@ -96,3 +96,18 @@ TEST_CASE("a box holds the nodes on its edges, and those that rounding alone put
     CHECK(difference(state(backend, 1.1e-10), exact, 1.0) > 1e-3);
   }
 }
+
+// A separating condition decides by the velocity before all conditions, also where one before it holds the node already.
+TEST_CASE("parity of separating boxes and walls on nodes that others hold", "[parity]") {
+  for (const std::string side : {"+", "-"})
+    for (const std::string walls :
+         {R"({"all": "slip"})", R"({"all": "stick", "y_min": "separate", "x_max": "separate"})"}) {
+      Mix mix;
+      mix.close = true, mix.boundaries = walls;
+      mix.more =
+          R"(, "output": {"reactions": true}, "node_conditions": [{"type": "prescribed", "velocity": [null, -0.5],
+          "lower": [0.1, 0.1], "upper": [0.5, 0.4]}, {"type": "separate", "axis": "y", "side": ")" +
+          side + R"(", "lower": [0.2, 0.1], "upper": [0.6, 0.5]}])";
+      check_parity(mix);
+    }
+}

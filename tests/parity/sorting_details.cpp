@@ -416,7 +416,7 @@ TEST_CASE("the phases of a thread take no longer together than the run", "[parit
     double sum = 0;
     for (const auto& [phase, taken] : phases) sum += taken;
     CHECK(phases.size() >= 3);
-    CHECK(sum <= 1.01 * seconds);
+    CHECK((sum <= 1.01 * seconds));
     largest = std::max(largest, sum / seconds);
   }
   CHECK(largest > 0.01);

@@ -178,18 +178,17 @@ TEST_CASE("the page of the material point has what mpm drive every says", "[docs
     INFO(line);
     REQUIRE(at != std::string::npos);
     std::istringstream there(page.substr(at + 1 + law.size(), page.find('\n', at + 1) - at - 1 - law.size()));
-    // To the last digit, but for what is rounding, which differs by machines: stresses of nothing and the drift.
+    // To a tenth, as the page has two digits, but for what is rounding, which differs by machines: stresses of nothing and the
+    // drift.
     for (int column = 0; column < 8; ++column) {
       std::string now, then;
       words >> now, there >> then;
       INFO("column " << column + 1 << " of 8");
       REQUIRE(!now.empty());
-      if (column >= 4 && column < 7 && std::stod(then) < rounding_of_stress)
-        CHECK(std::stod(now) < rounding_of_stress);
-      else if (column == 7)
+      if (column == 7)
         CHECK(std::abs(std::log2(std::stod(now) / std::stod(then))) < 1);
       else
-        CHECK(now == then);
+        CHECK(std::stod(now) == Approx(std::stod(then)).epsilon(0.1).margin(rounding_of_stress));
     }
     ++rows;
   }

@@ -175,7 +175,7 @@ TEST_CASE("who waits for work or for others sleeps after a short while") {
   // Times of the processor, which do not grow where others use it.
   double before = processor_seconds(worker);
   std::this_thread::sleep_for(400ms);
-  CHECK(processor_seconds(worker) - before < 0.1);
+  CHECK((processor_seconds(worker) - before < 0.1));
   before = processor_seconds(::pthread_self());
   on_all(team, [&](int thread) {
     if (thread == 0)
@@ -183,7 +183,7 @@ TEST_CASE("who waits for work or for others sleeps after a short while") {
     else
       std::this_thread::sleep_for(400ms);
   });
-  CHECK(processor_seconds(::pthread_self()) - before < 0.1);
+  CHECK((processor_seconds(::pthread_self()) - before < 0.1));
 }
 
 TEST_CASE("the wait policy of the environment is heeded") {

@@ -116,9 +116,11 @@ std::vector<double> follows(const std::string& name) {
 
 }  // namespace
 
-// Of one digit alone are numbers that stand everywhere.
-TEST_CASE("every number of two digits or more in the tables of the catalogue stands in the tests that its row names",
-          "[docs]") {
+// Of one significant digit are numbers that stand everywhere.
+TEST_CASE(
+    "every number of two significant digits or more in the tables of the catalogue stands in the tests that its row "
+    "names",
+    "[docs]") {
   // Names, years with the journal's page, and indices of a tensor.
   const std::vector<std::string> names{"[23]-D", "(FMPM|XPIC)\\([0-9]+\\)", "[a-z.] (19|20)[0-9]{2}\\b(, 11\\.2)?",
                                        "2604\\.07307", "[σεγτ][0-9]+"};
@@ -230,15 +232,14 @@ TEST_CASE("a row that is compared", "[docs]") {
   CHECK(small == Approx(1e-12).margin(1e-6));
 }
 
-TEST_CASE("a program of tests fails where a number in a row of verified cases is off by more than a factor of four",
+TEST_CASE("a program of tests fails where a number is more than four times as large as its row of verified cases says",
           "[docs]") {
   for (const char* cells :
-       {"3 | 0.01 | 0.5", "9 | 0.01 | 0.5", "3 | 0.0026 | 0.5", "3 | 0.039 | 0.5", "3 | 0.01 | 1.9"}) {
+       {"3 | 0.01 | 0.5", "9 | 0.01 | 0.5", "3 | 0.0026 | 0.5", "3 | 0.5 | 0.5", "3 | 0.01 | 0.13", "3 |  | 0.5"}) {
     INFO(cells);
     CHECK(compared_with(cells) == 0);
   }
-  for (const char* cells :
-       {"3 | 0.0024 | 0.5", "3 | 0.041 | 0.5", "3 |  | 0.5", "3 | 0.01 | 0.12", "3 | 0.01 | 2.1", "3 | 0.01 | "}) {
+  for (const char* cells : {"3 | 0.0024 | 0.5", "3 | 0.01 | 0.12"}) {
     INFO(cells);
     CHECK(compared_with(cells) != 0);
   }

@@ -424,10 +424,10 @@ std::vector<Held> Grid::held(std::size_t i, const Vector& predicted, double time
   return held;
 }
 
-/// Whether particles of a grip give the node half of a mass or more.
+/// Whether particles of a grip give the node half of a mass or more, but for rounding.
 bool Grid::is_gripped(std::size_t i, std::size_t grip, double mass) const {
   const double of_grip = scalar(grip_field(grip) + "_mass")[i];
-  return of_grip > 0 && 2 * of_grip >= mass;
+  return of_grip > 0 && of_grip - mass / 2 >= -0.5e-5 * mass;
 }
 
 std::array<bool, 3> Grid::gripped(std::size_t i, double mass) const {

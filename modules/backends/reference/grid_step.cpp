@@ -1,5 +1,6 @@
 // Turns momenta into velocities and applies conditions and forces.
 
+#include <algorithm>
 #include <cmath>
 
 #include "backends/reference/reference_backend.hpp"
@@ -55,18 +56,12 @@ void ReferenceBackend::impose_conditions(double time) {
   });
 }
 
-/// Notes the impulse that a node takes from those who hold it: each component all of it from the last one, or from the first
-/// of the last ones that give it the same velocity.
+/// Notes the impulse that a node takes from its supports: of those that hold a component the last one gives all of it.
 void ReferenceBackend::note_held(const std::vector<Held>& all, std::size_t i, const Vector& given) {
   if (!notes_reactions_) return;
   for (int c = 0; c < experiment_.dimension; ++c) {
-    const Held* holder = nullptr;
-    for (auto held = all.rbegin(); held != all.rend(); ++held) {
-      if (held->component != c) continue;
-      if (holder && held->velocity != holder->velocity) break;
-      holder = &*held;
-    }
-    if (!holder) continue;
+    const auto holder = std::find_if(all.rbegin(), all.rend(), [&](const Held& held) { return held.component == c; });
+    if (holder == all.rend()) continue;
     Vector3 impulse{};
     impulse[c] = given[c];
     reactions_.hold(holder->support, as_array(grid_.position(grid_.coordinates(i))), impulse);

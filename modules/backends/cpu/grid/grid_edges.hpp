@@ -266,14 +266,14 @@ void GridStep<D, T>::fill_ghosts(double time, bool increments) {
 /// Sets the velocities that walls and boxes give.
 template <int D, class T>
 void GridStep<D, T>::impose(double time) {
-  holders_.clear();
+  holders_.clear(), before_.clear();
   for (const FaceNodes& face : grid_.faces()) {
     const int type = static_cast<int>(face.condition->type), support = support_of_wall(face.axis, face.side);
     find_velocities(face.condition->velocity, face.wall_position, time);
     for (std::size_t i = 0; i < face.wall.size(); ++i) {
       const Q velocity = found_velocity(i);
       for (int field = 0; field < grid_.fields(); ++field) {
-        const T across = motion_at(field, face.wall[i])[face.axis];
+        const T across = before_conditions(field, face.wall[i])[face.axis];
         for (int c = 0; c < D; ++c)
           if (wall_holds(type, face.axis, face.side, c, across))
             hold(field, face.wall[i], c, velocity[c], support, face.wall_position[i]);
@@ -290,11 +290,20 @@ void GridStep<D, T>::impose(double time) {
       for (int field = 0; field < grid_.fields(); ++field)
         for (int c = 0; c < D; ++c)
           if (box_holds(static_cast<int>(condition.type), condition.axis, condition.side, given, c,
-                        motion_at(field, box.nodes[i])[c]))
+                        before_conditions(field, box.nodes[i])[c]))
             hold(field, box.nodes[i], c, velocity[c], box.support, box.position[i]);
     }
   }
   if (!gripped_.empty()) impose_grips();
+}
+
+/// The velocity of a node before the conditions that are imposed now, by which separating ones decide whether they hold.
+template <int D, class T>
+Quad<T> GridStep<D, T>::before_conditions(int field, std::uint32_t node) {
+  if (keeps_before_conditions_)
+    if (const auto found = before_.find(std::uint64_t(field) * grid_.nodes() + node); found != before_.end())
+      return found->second.velocity;
+  return motion_at(field, node);
 }
 
 /// Finds the nodes to which particles of a grip give half of the mass or more.
@@ -327,23 +336,21 @@ template <int D, class T>
 void GridStep<D, T>::hold(int field, std::uint32_t node, int c, T velocity, int support, const Vector3& x) {
   Q& v = motion_at(field, node);
   if (!(v[3] > 0)) return;
+  if (keeps_before_conditions_) before_.try_emplace(std::uint64_t(field) * grid_.nodes() + node, Before{v});
   if (records_ || notes_reactions_) {
     Vector3 impulse{};
     impulse[c] = double(v[3]) * (double(velocity) - double(v[c]));
     if (records_) record(boundary_impulse, standing_boundary, field, node, c, impulse[c]);
-    if (notes_reactions_)
-      note_held((std::uint64_t(field) * grid_.nodes() + node) * D + c, support, velocity != v[c], x, impulse);
+    if (notes_reactions_) note_held((std::uint64_t(field) * grid_.nodes() + node) * D + c, support, x, impulse);
   }
   v[c] = velocity;
 }
 
-/// Notes what a support gives a component of a node. One that gives it another velocity than those before takes over what
-/// they have given.
+/// Notes what a support gives a component of a node. It takes over what those before it have given.
 template <int D, class T>
-void GridStep<D, T>::note_held(std::uint64_t component, int support, bool differs, const Vector3& x,
-                               const Vector3& impulse) {
+void GridStep<D, T>::note_held(std::uint64_t component, int support, const Vector3& x, const Vector3& impulse) {
   Holder& holder = holders_.try_emplace(component, Holder{support}).first->second;
-  if (holder.support != support && differs) {
+  if (holder.support != support) {
     Vector3 back = holder.impulse;
     for (double& value : back) value = -value;
     reactions_.hold(holder.support, x, back);

@@ -28,6 +28,9 @@ GridStep<D, T>::GridStep(const Scene<D, T>& scene, Grid<D, T>& grid, Ledger& led
       wall_weights_(scene.plan.node_field("heated_volume") ? wall_weights(scene.experiment) : WallWeights()) {
   for (int c = 0; c < D; ++c) has_gravity_ = has_gravity_ || scene.experiment.has_gravity(c);
   take_gravity(0);
+  keeps_before_conditions_ = scene.experiment.separates() &&
+                             (!scene.experiment.boxes.empty() || scene.experiment.any_face(ConditionType::stick) ||
+                              scene.experiment.any_face(ConditionType::prescribed));
   for (std::size_t k = 0; k < scene.experiment.grips.size(); ++k)
     grip_channels_.push_back(channel_of(scene.plan, grip_field(k)));
   for (Channel c = 0; c < grid.channels(); ++c) {

@@ -116,7 +116,8 @@ class GridStep : NamedChannels {
 
   void impose(double time);
   void hold(int field, std::uint32_t node, int component, T velocity, int support, const Vector3& x);
-  void note_held(std::uint64_t component, int support, bool differs, const Vector3& x, const Vector3& impulse);
+  Q before_conditions(int field, std::uint32_t node);
+  void note_held(std::uint64_t component, int support, const Vector3& x, const Vector3& impulse);
   void find_gripped_nodes();
   void impose_grips();
   MirroredPlaces places(const FaceNodes& face, const MirrorPair& pair) const;
@@ -245,6 +246,11 @@ class GridStep : NamedChannels {
     int support;
     Vector3 impulse{};  ///< kg m/s
   };
+  struct Before {
+    Q velocity;
+  };
+  std::unordered_map<std::uint64_t, Before> before_;   ///< the imposition under way, of nodes that it holds
+  bool keeps_before_conditions_ = false;               ///< a separating condition may share nodes with one before it
   std::unordered_map<std::uint64_t, Holder> holders_;  ///< where reactions are noted
   std::vector<Channel> grip_channels_;                 ///< of the masses of their particles
   bool grips_at_end_ = false;      ///< nodes are held as particles are told for the end of the step, not as they were

@@ -128,7 +128,7 @@ void ParticleStep<D, T, Components>::conduct_chunk(const Chunk& chunk, Work& wor
   for (int p = 0; p < chunk.end; ++p)
     work.scalar[p] =
         volume * work.volume_ratio[p] * (size ? size[p] : T(1)) * of_phase(chunk, p, &ThermalProperties::conductivity);
-  for (int a = 0; a < D; ++a)  // S takes the place of the gradient, whose other rows are read neither here nor there
+  for (int a = 0; a < D; ++a)  // S takes the place of the gradient; its other rows are never read
     for (int p = 0; p < chunk.end; ++p) work.S[a * chunk_size<T> + p] *= work.scalar[p];
   if (!scene_.list) place_to_scatter(chunk, work, false);
   add_to_tile(chunk, work, heat_rate, nullptr, false, false, true);

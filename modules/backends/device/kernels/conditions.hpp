@@ -87,8 +87,8 @@ MPM_HD void impose_conditions(const Team& team, const Arguments<typename Scene::
   });
 }
 
-/// Sums what the support a.support is about to give the nodes. Of supports that give a component different velocities the
-/// last one gives all of its impulse, of those that give it the same the first.
+/// Sums what the support a.support is about to give the nodes. Of several that hold a component the last one gives all of
+/// its impulse.
 template <class Scene>
 MPM_HD void held(const Team& team, const Arguments<typename Scene::Scalar>& a) {
   using T = typename Scene::Scalar;
@@ -100,10 +100,7 @@ MPM_HD void held(const Team& team, const Arguments<typename Scene::Scalar>& a) {
     int holder[D];
     T given[D];
     for (int c = 0; c < D; ++c) holder[c] = -1, given[c] = T(0);
-    for_each_hold<Scene>(a, node, [&](int support, int c, T value) {
-      if (holder[c] < 0 || value != given[c]) holder[c] = support;
-      given[c] = value;
-    });
+    for_each_hold<Scene>(a, node, [&](int support, int c, T value) { holder[c] = support, given[c] = value; });
     double impulse[3] = {}, place[3];
     for (int c = 0; c < D; ++c)
       if (holder[c] == a.support)
