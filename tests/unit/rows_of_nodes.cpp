@@ -10,6 +10,7 @@ namespace {
 
 using namespace mpm;
 using namespace mpm::cpu;
+using mpm::cpu::Row;  // other tests compiled with these know another
 
 /// Numbers that differ from one another, aligned as the kernels' memory is.
 template <class T, std::size_t count>
