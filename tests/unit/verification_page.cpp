@@ -117,10 +117,8 @@ std::vector<double> follows(const std::string& name) {
 }  // namespace
 
 // Of one significant digit are numbers that stand everywhere.
-TEST_CASE(
-    "every number of two significant digits or more in the tables of the catalogue stands in the tests that its row "
-    "names",
-    "[docs]") {
+TEST_CASE("numbers of two significant digits in the tables of the catalogue stand in the tests that their row names",
+          "[docs]") {
   // Names, years with the journal's page, and indices of a tensor.
   const std::vector<std::string> names{"[23]-D", "(FMPM|XPIC)\\([0-9]+\\)", "[a-z.] (19|20)[0-9]{2}\\b(, 11\\.2)?",
                                        "2604\\.07307", "[σεγτ][0-9]+"};
