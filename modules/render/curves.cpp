@@ -217,7 +217,8 @@ void draw_point_labels(Canvas& canvas, const Theme& theme, const Scales& s, cons
   for (const Label& label : labels) {
     const double width = canvas.measure_text(label.text, theme.text), air = 14 * theme.unit;
     const auto [box, cost] = place_label(theme, s, label.at, width, labels_to, occupied);
-    occupied.labels.push_back({box.x0 - air, box.y0, box.x1 + air, box.y1});  // two labels without air would read as one
+    occupied.labels.push_back(
+        {box.x0 - air, box.y0, box.x1 + air, box.y1});  // two labels without air would read as one
     const Point corners[] = {{box.x0, box.y0}, {box.x1, box.y0}, {box.x1, box.y1}, {box.x0, box.y1}};
     if (cost < 10) canvas.polygon(corners, kWhite);  // covers lines that no place keeps clear of, never a mark
     const Colour colour = mix(kWhite, kInk, label.is_faded ? 0.6 : 1);
