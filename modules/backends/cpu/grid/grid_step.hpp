@@ -246,11 +246,13 @@ class GridStep : NamedChannels {
     int support;
     Vector3 impulse{};  ///< kg m/s
   };
+  /// The velocity of a node before the imposition under way. It has a name, as GCC warns of vectors as template arguments.
   struct Before {
     Q velocity;
   };
-  std::unordered_map<std::uint64_t, Before> before_;   ///< the imposition under way, of nodes that it holds
-  bool keeps_before_conditions_ = false;               ///< a separating condition may share nodes with one before it
+  std::unordered_map<std::uint64_t, Before>
+      before_;                            ///< of nodes that the imposition holds, where conditions may overlap
+  bool keeps_before_conditions_ = false;  ///< a separating condition may share nodes with one before it
   std::unordered_map<std::uint64_t, Holder> holders_;  ///< where reactions are noted
   std::vector<Channel> grip_channels_;                 ///< of the masses of their particles
   bool grips_at_end_ = false;      ///< nodes are held as particles are told for the end of the step, not as they were
