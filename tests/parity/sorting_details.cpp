@@ -67,6 +67,23 @@ void evaluate_empty_lists(const void* parameters, const mpm_list_batch* batch) {
   batch->node_count[0] = 0;
 }
 
+/// The shape cpdi2 whose lists another function makes.
+struct ShapeOfOtherLists {
+  explicit ShapeOfOtherLists(decltype(mpm_shape{}.evaluate_list[0][0]) evaluate)
+      : plugin(*plugins().find(MPM_SHAPE, "cpdi2")), table(plugin.shape()), descriptor(*plugin.descriptor) {
+    shape_overdone = &plugins().find(MPM_SHAPE, "cpdi2")->shape();
+    table.evaluate_list[MPM_LANES_DOUBLE][0] = evaluate;
+    descriptor.kind_table = &table;
+    plugin.descriptor = &descriptor;
+  }
+  ShapeOfOtherLists(const ShapeOfOtherLists&) = delete;
+  ShapeOfOtherLists& operator=(const ShapeOfOtherLists&) = delete;
+
+  Plugin plugin;
+  mpm_shape table;
+  mpm_descriptor descriptor;
+};
+
 /// Keeps to the stencil one node below up to 0.501 cells, where its next node has no weight yet.
 void evaluate_with_late_next_nodes(const void* parameters, const mpm_shape_batch* batch) {
   shape_overdone->evaluate[MPM_LANES_DOUBLE](parameters, batch);
@@ -312,19 +329,12 @@ TEST_CASE("a material that turns a particle inside out is told dimension and tem
 }
 
 TEST_CASE("a shape that gives too long a list ends the run, on any number of threads", "[parity][failure]") {
-  const Plugin& shape = *plugins().find(MPM_SHAPE, "cpdi2");
-  shape_overdone = &shape.shape();
-  mpm_shape table = *shape_overdone;
-  table.evaluate_list[MPM_LANES_DOUBLE][0] = evaluate_too_long_lists;
-  mpm_descriptor descriptor = *shape.descriptor;
-  descriptor.kind_table = &table;
-  Plugin overdoing = shape;
-  overdoing.descriptor = &descriptor;
+  const ShapeOfOtherLists overdoing(evaluate_too_long_lists);
   SortedScene flight;
   flight.shape = "cpdi2", flight.upper = "[31, 3]", flight.solver = R"({"time_step": 0.5, "end_time": 10})";
   for (const int threads : {1, 2}) {
     Experiment experiment = experiment_from(flight.text(), {"/backend=cpu", "/precision=double"});
-    experiment.shape.plugin = &overdoing;
+    experiment.shape.plugin = &overdoing.plugin;
     Simulation simulation(experiment, [threads](const Experiment& e, const Plan& plan, std::vector<SeededBody> bodies) {
       return make_cpu_backend(e, plan, std::move(bodies), threads);
     });
@@ -334,18 +344,11 @@ TEST_CASE("a shape that gives too long a list ends the run, on any number of thr
 
 // That is how a shape says that a domain is turned inside out (mpm_list_batch).
 TEST_CASE("a list without nodes, of corners, ends the run as a domain that is inside out", "[parity][failure]") {
-  const Plugin& shape = *plugins().find(MPM_SHAPE, "cpdi2");
-  shape_overdone = &shape.shape();
-  mpm_shape table = *shape_overdone;
-  table.evaluate_list[MPM_LANES_DOUBLE][0] = evaluate_empty_lists;
-  mpm_descriptor descriptor = *shape.descriptor;
-  descriptor.kind_table = &table;
-  Plugin empty = shape;
-  empty.descriptor = &descriptor;
+  const ShapeOfOtherLists empty(evaluate_empty_lists);
   SortedScene flight;
   flight.shape = "cpdi2", flight.solver = R"({"time_step": 0.5, "end_time": 10})";
   Experiment experiment = experiment_from(flight.text(), {"/backend=cpu", "/precision=double"});
-  experiment.shape.plugin = &empty;
+  experiment.shape.plugin = &empty.plugin;
   Simulation simulation(experiment, backend_factory(1));
   try {
     simulation.step();
