@@ -12,6 +12,7 @@
 #include "backends/device/drivers/host_driver.hpp"
 #include "backends/device/make_device_backend.hpp"
 #include "parity/parity.hpp"
+#include "support/trials.hpp"
 
 namespace mpm::test {
 
@@ -163,12 +164,12 @@ inline BackendFactory device_factory(const device::DeviceSetup& setup = device_s
   };
 }
 
-/// A scene on the host-run device.
+/// A scene on the host-run device. Of a case that has one, tests/mutation tries changed programs from the first one on.
 class DeviceScene {
  public:
   DeviceScene(const std::string& text, const std::string& precision, const TeamShape& team = {},
               const std::vector<std::string>& overrides = {})
-      : experiment(device_experiment(text, precision, overrides)),
+      : experiment((begin_trials(), device_experiment(text, precision, overrides))),
         simulation(experiment, device_factory(device_setup(team))),
         metrics(simulation) {}
   void run() {
@@ -210,6 +211,33 @@ double scene_difference(const Reference& reference, const DeviceScene& found) {
   double worst = difference(ledger_values(reference), ledger_values(found), reference.metrics.initial().kinetic);
   for (int body = 0; body < static_cast<int>(reference.experiment.bodies.size()); ++body)
     worst = std::max(worst, state_difference(reference.experiment, reference.body(body), found.body(body)));
+  return worst;
+}
+
+/// What is counted and measured of contact in the last step: nodes that stick and slip, penetration in cells, and of each pair
+/// the area of what touches, in a cell's faces.
+inline std::vector<double> contact_counts(const Backend& backend, const Experiment& experiment) {
+  const double h = experiment.grid.cell_size, face = std::pow(h, experiment.dimension - 1);
+  const ContactRecord& all = backend.contact_record();
+  std::vector<double> values{double(all.nodes), double(all.sticking), double(all.slipping),
+                             all.largest_penetration / h};
+  for (const PairRecord& pair : backend.contact_pairs())
+    values.insert(values.end(), {double(pair.sticking), double(pair.slipping), pair.area / face});
+  return values;
+}
+
+/// The largest difference of the ledgers' books, each over the kinetic energy, mass or momentum at the start.
+template <class Reference>
+double book_difference(const Reference& reference, const DeviceScene& found) {
+  const Totals& start = reference.metrics.initial();
+  const auto expected = rows_of(reference.simulation.backend().ledger()),
+             rows = rows_of(found.simulation.backend().ledger());
+  double worst = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (!rows[k].name.ends_with(" book")) continue;
+    const double size = rows[k].unit == "J" ? start.kinetic : start.mass * (rows[k].unit == "kg" ? 1 : 1.5);
+    worst = std::max(worst, std::abs(rows[k].value - expected[k].value) / size);
+  }
   return worst;
 }
 

@@ -12,6 +12,7 @@ const std::vector<std::string> precisions{"double", "float"};
 
 /// Compiles compositions of these mixes in both precisions, side by side.
 void prepare(const std::vector<Mix>& mixes, const std::vector<std::string>& in = precisions) {
+  if (!makes_all_checks()) return;
   std::vector<device::Choice> choices;
   std::set<std::string> texts;
   for (const Mix& mix : mixes)

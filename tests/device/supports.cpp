@@ -35,6 +35,7 @@ Mix pressed(int dimension) {
 }
 
 void check(const Mix& mix) {
+  if (!is_chosen_check()) return;
   INFO(mix.name());
   Scene reference(mix.text(), {"/backend=reference"});
   reference.run();

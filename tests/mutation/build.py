@@ -104,8 +104,15 @@ class Build:
 
     def test_of(self, name):
         """(suite, file) of a test's object; none for another object."""
-        found = re.match(r"tests/CMakeFiles/test_(\w+)\.dir/\w+/(\w+)\.cpp\.o", name)
+        found = re.match(r"tests/CMakeFiles/test_(\w+)\.dir/(?:together/)?\w+/(\w+)\.cpp\.o", name)
         return found and (found[1], found[2])
+
+    def files_together(self, name):
+        """The files that an object is compiled from as one; none where it has a source of its own."""
+        if "/together/" not in name:
+            return []
+        text = (self.folder / self.source_of[name]).read_text()
+        return [Path(file) for file in re.findall(r'(?m)^#include "(/[^"]+\.cpp)"', text)]
 
     # ---- tests -------------------------------------------------------------------------------------------------
 

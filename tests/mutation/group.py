@@ -10,6 +10,7 @@ import os
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import time
 from collections import Counter
@@ -161,10 +162,14 @@ class Group:
                 case.learn(kept[case.key])
 
     def results(self, mutants, jobs):
-        """(mutant, result) as they come, of `jobs` processes side by side."""
+        """(mutant, result) as they come, of `jobs` processes side by side. Those of the device are tried case by case: most
+        of a case's time goes to what it compares the device with."""
         global sharer
         sharer = self
-        if jobs == 1 or self.kernels:
+        if self.of_the_device:
+            yield from self.results_by_case(mutants, jobs)
+            return
+        if jobs == 1:
             for mutant in mutants:
                 yield mutant, self.result(mutant)
             return
@@ -190,7 +195,8 @@ class Group:
             found = INSTANTIATION.search(name)
             if name.startswith("tests/"):
                 test = self.build.test_of(name)
-                asked = test and (test[0] in self.suites or ".".join(test) in self.suites)
+                names = [f"{test[0]}.{file.stem}" for file in self.build.files_together(name)] or [".".join(test)] if test else []
+                asked = test and (test[0] in self.suites or set(names) & set(self.suites))
                 wanted = asked and (self.includes_one(name, files) or PLUGIN_IN_A_TEST.search(self.text_of(name)))
             elif found or "mpm_fused_backend.dir" in name:
                 wanted = found and found[1] in self.instantiations
@@ -224,10 +230,14 @@ class Group:
         holds that mutant as well, but no program is told to be it."""
         state = self.kept / "refused.json"
         if state.is_file():
-            refused = set(json.loads(state.read_text()))
+            kept = {name: set(numbers) for name, numbers in json.loads(state.read_text()).items()}
             for text in self.texts.values():
-                text.refused |= refused & set(text.numbers())
-        for name in self.objects:
+                own = set(text.numbers())
+                text.refused |= kept["refused"] & own
+                text.of_other_type |= kept["of_other_type"] & own
+                text.no_program |= kept["no_program"] & own
+        # What refuses a kernel's mutant takes it out of the texts that the composer's object holds, which is made last.
+        for name in sorted(self.objects, key=lambda name: name.endswith(COMPOSER)):
             while not self.path_of(name).is_file():
                 self.write_texts(self.bench.folder / "overlay", {file: t.written() for file, t in self.texts.items()})
                 output = self.compile(name, self.path_of(name), self.bench.folder / "overlay")
@@ -241,11 +251,16 @@ class Group:
     def note_refused(self):
         refused = {n for m, n in self.number_of.items() if n not in self.texts[m.file].numbers()}
         self.say(f"mutation: {len(refused)} of {len(self.mutants)} mutants are refused among the others")
-        (self.kept / "refused.json").write_text(json.dumps(sorted(refused)))
+        kept = {"refused": sorted(refused)}
+        for name in ("of_other_type", "no_program"):
+            kept[name] = sorted(set().union(*(getattr(text, name) for text in self.texts.values())))
+        (self.kept / "refused.json").write_text(json.dumps(kept))
 
     def path_of(self, name):
         """A test's object is made anew when its text has changed."""
-        text = hash_of((self.build.folder / self.build.source_of[name]).read_text()) + "_" if name.startswith("tests/") else ""
+        text = ""
+        if name.startswith("tests/"):
+            text = hash_of(self.text_of(name) + "".join(f.read_text() for f in self.build.files_together(name))) + "_"
         return self.kept / (text + name.replace("/", "_"))
 
     def write_texts(self, overlay, texts):
@@ -310,7 +325,7 @@ class Group:
         out = self.bench.folder / "bin" / f"{program}_changed" if changed is None else self.own(f"bin/{program}_alone")
         words[words.index("-o") + 1] = str(out)
         words = [words[0], *own.values(), *(word for word in words[1:] if word not in own.values())]
-        code, output = self.bench.run(words, 300)
+        code, output = self.bench.run([*words, "-Wl,--allow-multiple-definition"], 300)
         if code != 0:
             raise Refused(output)
         if changed is None:
@@ -415,9 +430,78 @@ class Group:
     def result(self, mutant):
         """What became of a mutant; none where it can only be compiled alone and changes too many objects."""
         number = self.number_of[mutant]
+        if number in self.texts[mutant.file].no_program:
+            return Result(Result.UNCOMPILED)
         if number not in self.texts[mutant.file].numbers():
             return self.result_alone(mutant)
         return self.tried(mutant, number, self.program_of, self.noted_as[number])
+
+    def results_by_case(self, mutants, jobs):
+        """(mutant, result): each case tries all that are left and come to it, in processes that begin where its scene of
+        the device does (tests/support/trials.hpp)."""
+        left = {}
+        for mutant in mutants:
+            number = self.number_of[mutant]
+            if number in self.texts[mutant.file].numbers():
+                left[number] = mutant
+            elif number in self.texts[mutant.file].no_program:
+                yield mutant, Result(Result.UNCOMPILED)
+            else:
+                yield mutant, self.result_alone(mutant)
+        came, tried = Counter(), set()
+        if not self.kernels:  # whose programs take long to compile: these are looked at when their turn comes
+            for case in [case for case in self.cases if case.usable is None]:
+                self.learn_of(case)
+            self.keep()
+        ordered = sorted(self.cases, key=lambda case: (case.name not in self.first, case.seconds or 0))
+        # One that has passed a few cases seldom fails in a like one: others first.
+        for most, case in [(3, case) for case in ordered] + [(math.inf, case) for case in ordered]:
+            numbers = [n for n in self.numbers_that_come_to(case, left) if came[n] < most and (n, case) not in tried]
+            if not numbers:
+                continue
+            killed = self.killed_by(case, numbers, jobs)
+            came.update(numbers)
+            tried.update((number, case) for number in numbers)
+            self.say(f"mutation: {len(killed)} of {len(numbers)} killed by {case.name} ({case.title} {case.check or ''})")
+            for number, status in killed.items():
+                yield left.pop(number), Result(status, case.name, case.title)
+        for number, mutant in left.items():
+            count = came[number]
+            yield mutant, Result(Result.SURVIVED, check=f"by {count} cases, all of those chosen that come to it" if count else "no case comes to it")
+
+    def numbers_that_come_to(self, case, left):
+        """Those of the mutants that are left. A composition that is compiled may take some of them out of all programs."""
+        if case.usable is None:
+            self.learn_of(case)
+        held = {n for mutant in set(left.values()) for n in [self.number_of[mutant]] if n in self.texts[mutant.file].numbers()}
+        return [n for n in left if n in held and self.noted_as[n] in case.comes_to] if case.usable else []
+
+    def killed_by(self, case, numbers, jobs):
+        """What became of those that do not pass, by their numbers. The first process is the unchanged program."""
+        listed, ended = self.own("numbers"), self.own("ended")
+        listed.write_text(" ".join(map(str, [0, *numbers])))
+        ended.unlink(missing_ok=True)
+        # The time is that of the process which waits for the others.
+        self.run(case, self.program_of(case.suite), 3600, self.programs_kept, MPM_MUTANTS=str(listed),
+                 MPM_MUTANTS_ENDED=str(ended), MPM_MUTANTS_AT_ONCE=str(jobs), MPM_MUTANT_SECONDS=str(10 * math.ceil(case.seconds) + 5))  # fmt: skip
+        if not ended.is_file():  # it makes no scene of the device
+            return self.killed_one_by_one(case, numbers)
+        statuses = dict(map(int, line.split()) for line in ended.read_text().splitlines())
+        if statuses.get(0) != 0:
+            self.say(f"mutation: {case.name} ({case.title}) fails on the unchanged program where processes share its beginning")
+            return {}
+        signals = {n: os.WTERMSIG(status) for n, status in statuses.items() if os.WIFSIGNALED(status)}
+        # One that has slept too long may have met a machine with much to do.
+        return {n: Result.TIMED_OUT if signals.get(n) in (signal.SIGXCPU, signal.SIGKILL) else Result.KILLED
+                for n, status in statuses.items() if status != 0 and signals.get(n) != signal.SIGALRM}  # fmt: skip
+
+    def killed_one_by_one(self, case, numbers):
+        killed = {}
+        for number in numbers:
+            code = self.run(case, self.program_of(case.suite), 10 * case.seconds + 5, self.programs_of_mutant(), MPM_MUTANT=str(number))
+            if code != 0:
+                killed[number] = Result.TIMED_OUT if code is None else Result.KILLED
+        return killed
 
     def result_alone(self, mutant):
         objects = [name for name in self.chosen_objects({mutant.file}) if not self.build.test_of(name)]

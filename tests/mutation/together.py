@@ -11,16 +11,19 @@ from mutants import closing, tokens_of
 ASSIGNMENTS = ("=", "+=", "-=", "*=", "/=")
 OPENMP_LOOP = re.compile(r"#pragma omp (?:[^\n]*\\\n)*[^\n]*\n\s*for \([^\n]*")  # its head has a form of its own
 CHOICE_OF_LANES = ["[", "]", "(", "int", "lane", ")", "{"]  # what shuffled() of modules/kernel/lanes.hpp is told
+NO_EXPRESSION = ("no match for", "invalid operands")  # what the compiler says of "a" - "b", alone as among others
 SWITCH_FILE = "mpm_mutant_switch.hpp"
 SWITCH = """#pragma once
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <cstdlib>
-inline const int mpm_mutant = [] {
+#include <type_traits>
+inline int mpm_mutant = [] {
   const char* number = std::getenv("MPM_MUTANT");
   return number ? std::atoi(number) : 0;
 }();
+extern "C" __attribute__((weak, used)) void mpm_become_mutant(int number) { mpm_mutant = number; }
 inline unsigned char* mpm_open_seen() {
   const char* path = std::getenv("MPM_MUTANT_SEEN");
   const int file = path ? open(path, O_RDWR) : -1;
@@ -121,6 +124,7 @@ class Together:
 
     def __init__(self, text, mutants, first=1):
         self.text, self.mutants, self.first, self.refused = text, mutants, first, set()
+        self.of_other_type, self.no_program = set(), set()  # given the type of the unchanged expression; no expression at all
         tokens = tokens_of(text)
         self.spans = {}
         for number, mutant in enumerate(mutants, first):
@@ -186,6 +190,8 @@ class Together:
             m = self.mutants[number - self.first]
             changed = self.text[begin : m.begin] + m.replacement + self.text[m.end : end]
             without = (begin, end) == (m.begin, m.end) and not m.replacement  # a whole assignment
+            if number in self.of_other_type:
+                changed = f"static_cast<std::decay_t<decltype({self.text[begin:end]})>>({changed})"
             changed, base = ("void()", f"void({base})") if without else (f"({changed})", base)
             written += f'\n#line 1 "mutant_{number}"\nmpm_mutant == {number} ? {changed} :'
         noted = self.spans[begin, end][0]
@@ -209,5 +215,16 @@ class Together:
         if not named and not errors:  # of an array the compiler names the whole line
             named = {number for number, m in enumerate(self.mutants, self.first) if m.line in lines}
         named &= set(self.numbers())
+        retyped, messages = False, {}
+        for where, number, message in errors:
+            messages.setdefault(int(number), message)
+        for number in list(named):
+            message = messages.get(number, "")
+            if any(words in message for words in NO_EXPRESSION):
+                self.no_program.add(number)
+            elif "different types" in message and number not in self.of_other_type:
+                self.of_other_type.add(number)
+                named.discard(number)
+                retyped = True
         self.refused |= named
-        return bool(named)
+        return bool(named) or retyped

@@ -20,4 +20,9 @@ inline bool is_chosen_check() {
   return !chosen || std::atoi(chosen) == count;
 }
 
+/// Whether this process makes all checks, so that what they need is worth making beforehand.
+inline bool makes_all_checks() {
+  return !std::getenv("MPM_CHECK") && !std::getenv("MPM_CHECKS_COUNTED");
+}
+
 }  // namespace mpm::test
