@@ -17,6 +17,10 @@
 
 namespace mpm {
 
+namespace formula {
+class Graph;
+}
+
 /// A formula that cannot be used; the message quotes it and says where in it the mistake is.
 class ExpressionError : public std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -87,6 +91,10 @@ class VectorExpression {
   std::size_t operations_at_points() const;
   /// The operations that a call costs once, whatever its points.
   std::size_t operations_of_call() const;
+
+  /// The formulas as terms, and which of them the components are; null and empty where all components are constant.
+  const formula::Graph* graph() const;
+  std::vector<int> terms() const;
 
   bool is_constant() const { return !formulas_; }
   bool uses_position() const { return uses_position_; }

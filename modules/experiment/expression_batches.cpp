@@ -128,6 +128,13 @@ std::size_t VectorExpression::evaluate(int component, std::span<const Vector3> x
                      });
 }
 
+const formula::Graph* VectorExpression::graph() const {
+  return formulas_ ? &formulas_->graph : nullptr;
+}
+std::vector<int> VectorExpression::terms() const {
+  return formulas_ ? formulas_->terms : std::vector<int>();
+}
+
 std::size_t VectorExpression::operations_at_points() const {
   return formulas_ ? formulas_->all.instructions().size() : 0;
 }

@@ -81,6 +81,7 @@ class FirstFailure {
     if (other.first_) note(*other.first_);
   }
   bool any() const { return first_.has_value(); }
+  const std::optional<Failure>& first() const { return first_; }
   /// Throws RunFailure where a failure was noted, and forgets it.
   void raise() {
     if (const std::optional<Failure> first = std::exchange(first_, std::nullopt)) throw RunFailure(*first);

@@ -212,7 +212,6 @@ template void BodyLoads::accelerations(std::size_t, const std::int32_t*, const P
 template void BodyLoads::accelerations(std::size_t, const std::int32_t*, const PointArrays<float>&, double,
                                        const std::array<float*, 3>&, FirstFailure&) const;
 
-/// Notes what makes the acceleration of a particle not finite.
 void BodyLoads::note_acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time,
                                   FirstFailure& failures) const {
   bool noted = false;

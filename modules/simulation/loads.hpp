@@ -54,6 +54,8 @@ class BodyLoads {
   template <class T>
   void accelerations(std::size_t count, const std::int32_t* ids, const PointArrays<T>& at, double time,
                      const std::array<T*, 3>& result, FirstFailure& failures) const;
+  /// Notes which formulas give a particle no finite acceleration, the first one where that does not show.
+  void note_acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time, FirstFailure& failures) const;
 
   /// Evaluates a kind of force that acts at points, at the time of a step's begin: calls give(p, coefficients) for those
   /// of `count` particles that carry some, after read(p, particle) has filled the particle, and notes those whose load is
@@ -88,7 +90,6 @@ class BodyLoads {
     const VectorExpression* expression;
     const Load* load;
   };
-  void note_acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time, FirstFailure& failures) const;
   bool carries(ExternalForce force, std::size_t id) const;
   LoadCoefficients coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle, double time,
                                 FirstFailure& failures) const;

@@ -65,6 +65,7 @@ inline Mix warm_mix(int dimension, const std::string& transfer) {
     "y_min": {"type": "slip", "convection": {"coefficient": 900, "temperature": 60}}})";
   mix.more = std::string(R"(, "body_force": [1, 2)") + (dimension == 3 ? ", 3]" : "]");
   mix.overrides = {set("/bodies/0/temperature", "20"), set("/bodies/1/temperature", "25")};
+  if (!mix.contact.empty()) mix.overrides.push_back(set("/output", R"({"contact_pairs": true})"));
   return mix;
 }
 
@@ -76,6 +77,7 @@ inline std::vector<Mix> every_addition(int dimension) {
   const bool flat = dimension == 2;
   for (const std::string transfer : {R"({"type": "flip"})", R"({"type": "asflip"})"})
     mixes.push_back(warm_mix(dimension, transfer));
+  std::erase_if(mixes.back().overrides, [](const std::string& o) { return o.starts_with("/output"); });
   mixes.back().contact = "", mixes.back().stress_update = "modified_last";
   mixes.back().more += std::string(R"(, "node_conditions": [{"type": "thermal", "heating": 900, "lower": )") +
                        (flat ? "[0.2, 0.2], \"upper\": [0.5, 0.4]}]" : "[0.2, 0.2, 0.2], \"upper\": [0.5, 0.4, 0.4]}]");
@@ -92,21 +94,25 @@ inline std::vector<Mix> every_addition(int dimension) {
   const auto beyond = [](const std::string& point, const std::string& normal) {
     return R"({"type": "half_space", "point": )" + point + R"(, "normal": )" + normal + "}";
   };
-  loaded.more = R"J(, "damping": {"viscous": 3, "local": 0.2}, "output": {"reactions": true}, "loads": [
+  loaded.more =
+      R"J(, "damping": {"viscous": 3, "local": 0.2}, "output": {"reactions": true}, "loads": [
       {"type": "pressure", "body": "a", "where": )J" +
-                beyond(of("[0.31, 0]", "[0.27, 0, 0]"), of("[1, 0.3]", "[1, 0.3, 0.1]")) +
-                R"J(, "pressure": "400+100*sin(9*t)"},
+      beyond(of("[0.31, 0]", "[0.27, 0, 0]"), of("[1, 0.3]", "[1, 0.3, 0.1]")) +
+      R"J(, "pressure": "400+100*sin(9*t)"},
       {"type": "spring", "body": "b", "where": )J" +
-                beyond(of("[0.52, 0]", "[0.42, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) + R"J(, "stiffness": )J" +
-                of("[2e3, 1e3]", "[2e3, 1e3, 500]") + R"J(, "damping": )J" + of("[50, 100]", "[50, 100, 0]") +
-                R"J(}], "node_conditions": [{"type": "slip", "axis": "y", "lower": )J" +
-                of("[0.2, 0.3]", "[0.2, 0.1, 0.1]") + R"J(, "upper": )J" + of("[0.3, 0.4]", "[0.3, 0.2, 0.4]") +
-                R"J(}, {"type": "prescribed", "lower": )J" + of("[0.7, 0.3]", "[0.5, 0.2, 0.3]") + R"J(, "upper": )J" +
-                of("[0.8, 0.5]", "[0.6, 0.4, 0.4]") + R"J(, "velocity": )J" +
-                of("[\"1.1-3*t*y\", \"0.3*x-0.12\"]", "[\"1.1-3*t*y\", \"0.3*x-0.12\", \"0.2*x*z\"]") +
-                R"J(}], "grips": [{"body": "a", "where": )J" +
-                beyond(of("[0.22, 0]", "[0.22, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) + R"J(, "velocity": )J" +
-                of("[\"1.2+t\", null]", "[\"1.2+t\", null, \"X\"]") + "}]";
+      beyond(of("[0.52, 0]", "[0.42, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) + R"J(, "stiffness": )J" +
+      of("[2e3, 1e3]", "[2e3, 1e3, 500]") + R"J(, "damping": )J" + of("[50, 100]", "[50, 100, 0]") +
+      R"J(}, {"type": "body_force", "body": "b", "acceleration": )J" + of("[\"X\", \"t-y\"]", "[\"X\", \"t-y\", 1]") +
+      R"J(}], "node_conditions": [{"type": "slip", "axis": "y", "lower": )J" + of("[0.2, 0.3]", "[0.2, 0.1, 0.1]") +
+      R"J(, "upper": )J" + of("[0.3, 0.4]", "[0.3, 0.2, 0.4]") + R"J(}, {"type": "prescribed", "lower": )J" +
+      of("[0.7, 0.3]", "[0.5, 0.2, 0.3]") + R"J(, "upper": )J" + of("[0.8, 0.5]", "[0.6, 0.4, 0.4]") +
+      R"J(, "velocity": )J" + of("[\"1.1-3*t*y\", \"0.3*x-0.12\"]", "[\"1.1-3*t*y\", \"0.3*x-0.12\", \"0.2*x*z\"]") +
+      R"J(}], "grips": [{"body": "a", "where": )J" +
+      beyond(of("[0.22, 0]", "[0.22, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) + R"J(, "velocity": )J" +
+      of("[\"1.2+t\", null]", "[\"1.2+t\", null, \"X\"]") +
+      // This one holds nodes whole where the other body meets them.
+      R"J(}, {"body": "b", "where": )J" + beyond(of("[0.58, 0]", "[0.48, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) +
+      R"J(, "velocity": )J" + of("[\"0.9-0.2*t\", \"0.3*y\"]", "[\"0.9-0.2*t\", \"0.3*y\", \"0.2*X\"]") + "}]";
   mixes.push_back(loaded);
   Mix periodic;
   periodic.dimension = dimension, periodic.boundaries = R"({"all": "slip", "x_min": "periodic", "x_max": "periodic"})";
@@ -120,6 +126,9 @@ inline std::vector<Mix> every_addition(int dimension) {
     Mix rings;
     rings.overrides = {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")};
     rings.filter = R"({"type": "xpic", "order": 2})", rings.stress_update = "modified_last";
+    rings.close = true;
+    rings.contact = R"({"type": "breakable_glue", "tension_stiffness": 1e4, "compression_stiffness": 5e4,
+      "shear_stiffness": 2e4, "normal_strength": 60, "shear_strength": 90, "friction": 0.2})";
     mixes.push_back(rings);
   }
   return mixes;

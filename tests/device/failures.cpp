@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "device/device_support.hpp"
+#include "simulation/imposed_value.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -102,6 +103,45 @@ TEST_CASE("every backend names the load that is no number, and the first particl
   const Failure both =
       common_failure(text, {R"J(/body_force=["X", "t"])J", "/loads=[" + of_body + ", " + pressed + "]"});
   CHECK(both.formula.find(": /loads/1/pressure: is not a finite number at t = 0 s") != std::string::npos);
+  // Both are none in the same step: the particle of the lower index is named, whichever load it has.
+  for (const auto& [begin, end, first] :
+       {std::tuple{"1.3", "1.7", "/loads/0/acceleration/1"}, std::tuple{"2.3", "1.7", "/loads/1/pressure"}}) {
+    const std::string pull =
+        std::string(R"J({"type": "body_force", "body": "b", "acceleration": ["0.1", "sqrt(if(x > )J") + begin +
+        R"J(, 0.035-t, 1))"]})J";
+    const std::string press = R"J({"type": "pressure", "body": "b", )J" + edge +
+                              R"J(, "pressure": "1e-9*sqrt(if(X > )J" + end + R"J(, 0.035-t, 1))"})J";
+    INFO(begin << " " << end);
+    const Failure at_once = common_failure(text, {"/loads=[" + pull + ", " + press + "]"});
+    CHECK(at_once.formula.find(first) != std::string::npos);
+  }
+}
+
+TEST_CASE("every backend names the grip whose velocity is no number, and where its first such particle is",
+          "[device][failure]") {
+  const std::string text = thrown("bspline_quadratic", "pic", R"J(["1", "1"])J");
+  const auto words_of = [](auto& scene) -> std::string {
+    try {
+      while (!scene.simulation.finished()) scene.simulation.step();
+    } catch (const ImposedValueFailure& stopped) {
+      return std::to_string(scene.simulation.steps()) + " " + stopped.what();
+    }
+    return "";
+  };
+  // By the time at the end of a step, and by the place of a particle that has come there.
+  for (const std::string velocity : {R"J([null, "sqrt(0.035-t)"])J", R"J([null, "log(3.045-x)"])J"}) {
+    INFO(velocity);
+    const std::string grips = "/grips=[{\"body\": \"b\", \"velocity\": " + velocity +
+                              R"J(, "where": {"type": "half_space", "point": [1.9, 0], "normal": [-1, 0]}}])J";
+    Scene reference(text, {grips, "/backend=reference", "/precision=double"});
+    const std::string expected = words_of(reference);
+    CHECK(expected.find("/grips/0/velocity/1: is not a finite number at t = ") != std::string::npos);
+    CHECK(expected.substr(0, 2) == (velocity.find("sqrt") != velocity.npos ? "3 " : "30"));
+    DeviceScene device(text, "double", {}, {grips});
+    CHECK(words_of(device) == expected);
+    DeviceScene in_float(text, "float", {}, {grips});
+    CHECK(words_of(in_float).substr(0, 2) == expected.substr(0, 2));
+  }
 }
 
 TEST_CASE("every backend names a temperature that is not a number", "[device][failure]") {

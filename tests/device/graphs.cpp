@@ -95,10 +95,24 @@ TEST_CASE("the host waits for the device once a step, and not at all within one"
   }
 }
 
-TEST_CASE("the host waits within a step where contact looks at particles, or loads are given", "[device][graphs]") {
+TEST_CASE("formulas of forces by mass and of grips are evaluated without the host, in graphs too", "[device][graphs]") {
+  for (const std::string& setting :
+       {set("/body_force", R"(["x", 0])"), set("/body_force", R"J(["0.1*t", "X+sin(9*t*y)"])J"),
+        std::string(R"(/loads=[{"type": "body_force", "body": "b", "acceleration": ["0.1*t-X", 0]}])"),
+        std::string(R"J(/grips=[{"body": "a", "velocity": ["1.2+t-0.9*(Y-0.4)", null],
+            "where": {"type": "half_space", "point": [0.22, 0], "normal": [1, 0]}}])J")}) {
+    INFO(setting);
+    const Run plain = run(touching().text(), false, {setting}), found = run(touching().text(), true, {setting});
+    check_same(plain, found);
+    for (const Run* any : {&plain, &found}) CHECK(any->synchronisations == any->steps);
+    CHECK(found.graph_launches >= found.steps - 3);
+  }
+}
+
+TEST_CASE("the host waits within a step where contact looks at particles, or loads act at points", "[device][graphs]") {
   for (const std::string& setting :
        {set("/contact/normal", "\"widest_gap\""), set("/contact/detection", "\"particle_surfaces\""),
-        set("/body_force", R"(["x", 0])")}) {
+        std::string(R"(/loads=[{"type": "force", "body": "a", "at": [0.31, 0.43], "force": [5, 2]}])")}) {
     INFO(setting);
     const Run found = run(touching().text(), true, {setting});
     CHECK(found.synchronisations >= 2 * found.steps);
@@ -108,8 +122,7 @@ TEST_CASE("the host waits within a step where contact looks at particles, or loa
 TEST_CASE("steps that ask the host for something are no graphs", "[device][graphs]") {
   for (const std::string& setting :
        {set("/grid/boundaries/y_min", R"({"type": "prescribed", "velocity": ["0.1*t", 0]})"),
-        set("/body_force", R"(["0.1*t", 0])"), set("/gravity", R"(["0.1*t", 0])"),
-        set("/contact/normal", "\"widest_gap\"")}) {
+        set("/gravity", R"(["0.1*t", 0])"), set("/contact/normal", "\"widest_gap\"")}) {
     INFO(setting);
     const Run plain = run(touching().text(), false, {setting}), found = run(touching().text(), true, {setting});
     check_same(plain, found);

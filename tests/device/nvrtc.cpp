@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "device/covering.hpp"
+#include "device/formula_scenes.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -65,6 +66,8 @@ TEST_CASE("every plugin compiles to machine code with NVRTC where it is installe
       REQUIRE(std::count(entries.begin(), entries.end(), "mpm_change_phase_0") == 1);
     }
   }
+  for (const std::string& precision : precisions)
+    compositions.push_back(composition_of(mix_with_every_operation(3), precision));
   REQUIRE(compositions.size() >= 3 * plugins().of_kind(MPM_SHAPE).size());
   check_that_they_compile(*nvrtc, compositions);
 }

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "backends/device/kernels/fields.hpp"
+#include "backends/device/particle_formulas.hpp"
 #include "experiment/device_settings.hpp"
 #include "kernel/polynomial_basis.hpp"
 #include "plugin/extension_of.hpp"
@@ -197,7 +198,11 @@ bool keeps_ledger(const Choice& choice) {
   return number_of(choice.particle_fields, "dissipated") >= 0;
 }
 
-/// Whether anything acts on bodies from outside.
+bool has_body_force(const Choice& choice) {
+  return number_of(choice.node_fields, "body_force") >= 0;
+}
+
+/// Whether anything acts on bodies at points.
 bool has_loads(const Choice& choice) {
   return number_of(choice.particle_fields, "load_force") >= 0;
 }
@@ -222,6 +227,7 @@ std::vector<EntryGroup> entry_groups(const Choice& choice) {
                                  {"MPM_DEVICE_SUM_ENTRIES", 1},
                                  {"MPM_DEVICE_SORT_ENTRIES", 1},
                                  {"MPM_DEVICE_APART_ENTRIES", apart},
+                                 {"MPM_DEVICE_BODY_FORCE_ENTRIES", has_body_force(choice)},
                                  {"MPM_DEVICE_LOAD_ENTRIES", has_loads(choice)},
                                  {"MPM_DEVICE_LEDGER_ENTRIES", ledger},
                                  {"MPM_DEVICE_CONTACT_ENTRIES", choice.contact != nullptr},
@@ -295,7 +301,7 @@ std::string scene_text(const Choice& choice) {
       << ";  // polynomials beyond affine\n";
   write_fields(out, choice);
   if (has_temperature(choice)) write_temperature_state(out, choice);
-  out << "};\n";
+  out << choice.formulas << "};\n";
   for (std::size_t k = 0; k < choice.materials.size(); ++k) {
     const auto* temperature = extension_of<mpm_material_temperature>(*choice.materials[k]);
     out << "struct Scene" << k << " : Scene {\n  using Material = " << type(choice.materials[k])
@@ -380,6 +386,7 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.deterministic = sums_deterministically(experiment);
   choice.contact_by_particles = ContactPoints(experiment).needed();
   choice.notes_contact = records_nodes(experiment);
+  choice.formulas = ParticleFormulas(experiment).text();
   choice.node_fields = node_fields(experiment, plan);
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;

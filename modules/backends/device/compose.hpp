@@ -30,6 +30,7 @@ struct Choice {
   bool reactions = false;                           ///< what supports give is summed
   Advance advance = Advance::apart;                 ///< how particles go from one scatter to the next
   int basis_order = 0;                              ///< as in Plan
+  std::string formulas;                             ///< functions of the scene (ParticleFormulas), empty without any
   std::vector<Field> node_fields, particle_fields;  ///< numbered (backends/device/fields.hpp); those of any one body
 
   /// The choice in words for messages: "2-D double: linear apic coulomb neo_hookean".

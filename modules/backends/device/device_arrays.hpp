@@ -22,7 +22,7 @@ struct Body {
   const Thermal* thermal = nullptr;  ///< null in scenes without temperature
   HeatOfBody<T> heat{};
   ArtificialViscosity<T> viscosity{};  ///< zeros where the material has none
-  int field = 0, material_number = 0, count = 0, dimension = 2;
+  int number_of_body = 0, field = 0, material_number = 0, count = 0, dimension = 2;
   bool frozen = false;
   T mass = 0, volume = 0, half_size = 0;
   FieldArrays<T> arrays;
@@ -40,7 +40,7 @@ struct Body {
         melted_parameters(device, "the parameters of a melted material"),
         blocks(device, experiment.bodies[index].name, scene, experiment.dimension, seeded.count()) {
     const BodySpecification& body = experiment.bodies[index];
-    frozen = body.frozen;
+    number_of_body = index, frozen = body.frozen;
     material = &experiment.materials[body.material].component;
     if (const auto& given = experiment.materials[body.material].thermal) {
       thermal = &*given;
@@ -129,7 +129,7 @@ struct Body {
   }
 
   ParticleArrays<T> table() const {
-    ParticleArrays<T> table{count, count, mass, volume, half_size, frozen ? 1 : 0, {}, heat, viscosity};
+    ParticleArrays<T> table{count, count, mass, volume, half_size, number_of_body, frozen ? 1 : 0, {}, heat, viscosity};
     arrays.point(table.field);
     return table;
   }

@@ -1,7 +1,7 @@
 #pragma once
 // The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
-// libcuda's, or the host's. Particles and nodes stay on the device. The host evaluates formulas, at places that
-// it reads, and once a step takes what phases have summed.
+// libcuda's, or the host's. Particles and nodes stay on the device. Once a step the host takes what phases have
+// summed.
 
 #include <array>
 #include <memory>
@@ -15,6 +15,7 @@
 #include "backends/device/contact_pairs.hpp"
 #include "backends/device/device.hpp"
 #include "backends/device/device_arrays.hpp"
+#include "backends/device/formula_numbers.hpp"
 #include "backends/device/heat_conditions.hpp"
 #include "backends/device/make_device_backend.hpp"
 #include "backends/device/results.hpp"
@@ -32,7 +33,7 @@ struct Manner {
 };
 
 /// The reasons for which a phase reports particles.
-enum class Checks { stencil, temperature, deformation, position };
+enum class Checks { stencil, force, grip, temperature, deformation, position };
 
 /// The part of contact that goes to the ledger and to the record.
 enum class Recorded { nothing, before_forces, after_forces, filter };
@@ -115,7 +116,8 @@ class DeviceBackend final : public Backend {
   void run(const std::string& phase, const Arguments<T>& a, const Body<T>& body, Checks checks);
   /// Keeps in mind that the last launch, or a part of it, may report a particle.
   void watch(const Body<T>& body, Checks checks, int part = 0);
-  void run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body);
+  void run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body,
+                  Checks checks = Checks::stencil);
   void launch_blocks(const std::string& phase, Arguments<T> a, const Body<T>& body);
   /// Waits for the device. Stops the run where a phase has reported a particle; else does what waited for results.
   void look();
@@ -149,15 +151,20 @@ class DeviceBackend final : public Backend {
   void move();
 
   // ---- loads.cpp: loads and grips
-  /// Evaluates what gripped particles are told for the end of the step, and lets nodes know of them.
-  void scatter_grips(Body<T>& body, double end);
+  /// Tells gripped particles what they are to do at the end of the step, and lets nodes know of them.
+  void scatter_grips(const Body<T>& body);
+  /// Throws ImposedValueFailure for the velocity of a gripped particle, of which a kernel has found that it is not finite.
+  [[noreturn]] void refuse_told(const Body<T>& body, int p) const;
   /// Sums what grips gave a body's particles in the gather, and its energy, J.
   void note_gripped(const Body<T>& body, const StepInfo& step, const Tally<1>& energy);
-  /// Evaluates the loads of a body at its particles, and scatters each kind into its own field. Throws RunFailure where
-  /// one is not finite.
+  /// Scatters each kind of load of a body into its own field: those by its mass as a kernel finds them, and those at
+  /// points as the host does. Throws RunFailure where one of these is not finite.
   void scatter_loads(Body<T>& body, Arguments<T> a, double time);
-  void evaluate_body_force(Body<T>& body, const BodyLoads& loads, double time, FirstFailure& failures);
   void evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time, FirstFailure& failures);
+  const BodyLoads& loads_of(const Body<T>& body) const { return loads_[static_cast<std::size_t>(body.number_of_body)]; }
+  /// Reports the first load of a body that is not finite, after a kernel has found the force by mass on a particle to be
+  /// none.
+  Failure failed_force(const Body<T>& body, int p) const;
 
   // ---- conditions.cpp: from momenta to velocities, and what supports give
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
@@ -305,6 +312,8 @@ class DeviceBackend final : public Backend {
   Results results_;
   int launches_ = 0;  ///< since the host has looked
   std::vector<Watched> watched_;
+  FormulaNumbers<T> formulas_;
+  double time_ = 0, end_ = 0;  ///< at which the step under way begins and ends, s
   Conditions<T> conditions_;
   std::optional<HeatConditions<T>> heat_conditions_;  ///< empty in scenes without temperature
   std::vector<Body<T>> bodies_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "backends/device/particle_formulas.hpp"
+
 namespace mpm::device {
 namespace {
 
@@ -35,17 +37,11 @@ std::vector<Field> node_fields(const Experiment& experiment, const Plan& plan) {
   return fields;
 }
 
-bool gives_loads(const Plan& plan) {
-  return std::any_of(external_forces.begin(), external_forces.end(),
-                     [&](ExternalForce force) { return plan.node_field(field_of(force)) != nullptr; });
-}
-
 std::vector<Field> particle_fields(const Experiment& experiment, const Plan& plan, int body) {
   const int D = experiment.dimension;
   std::vector<Field> fields, material;
   for (const Field& field : plan.fields) {
-    const bool springs_read = field.lifetime == Lifetime::seeded && plan.node_field("mass_displacement");
-    if (!field.of_particles_of(body) || (field.lifetime == Lifetime::seeded && !springs_read)) continue;
+    if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded) continue;
     if (field.origin == Origin::host && field.id == "identity") continue;  // particles keep the order of seeding
     if (field.origin == Origin::host && (field.id == "melted_fraction" || field.id == "deformation" ||
                                          field.id == "size" || field.id == "artificial_pressure"))
@@ -68,10 +64,15 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   if (plan.does(Act::average_dilation)) work("mean_dilation", "1/s", 1);
   if (!experiment.grips.empty())
     for (const char* id : {"told_velocity", "gathered_velocity"}) work(id, "m/s", D);
-  if (gives_loads(plan)) work("load_force", "N", D);
   const bool loaded = !experiment.loaded_at_points().empty();
-  if (loaded) work("load_moment", "N m", D * D);
-  // All bodies have the same numbers, those too that no load needs it of.
+  if (loaded) work("load_force", "N", D), work("load_moment", "N m", D * D);
+  // All bodies have the same numbers, those too that no formula or load needs these of.
+  if (plan.node_field("mass_displacement") || ParticleFormulas(experiment).use_initial_position()) {
+    if (const Field* const start = plan.particle_field(body, "initial_position"))
+      fields.push_back(*start);
+    else
+      work("initial_position", "m", D);
+  }
   if (const Field* const deformation = plan.particle_field(body, "deformation"))
     fields.push_back(*deformation);
   else if (loaded)

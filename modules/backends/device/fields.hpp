@@ -13,9 +13,7 @@ namespace mpm::device {
 std::vector<Field> node_fields(const Experiment& experiment, const Plan& plan);
 
 /// The fields of one body's particles. The state of the material comes last, so that the numbers before it are those of
-/// all bodies. Positions as seeded, which no kernel reads, are not among them.
-/// Whether anything acts on bodies from outside.
-bool gives_loads(const Plan& plan);
+/// all bodies. Positions as seeded are among them where a kernel reads them.
 std::vector<Field> particle_fields(const Experiment& experiment, const Plan& plan, int body);
 
 /// The number of the first field with this id and origin; -1 where there is none.

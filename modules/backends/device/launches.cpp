@@ -106,16 +106,16 @@ void DeviceBackend<T>::run(const std::string& phase, const Arguments<T>& a, cons
 }
 
 template <class T>
-void DeviceBackend<T>::run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body) {
+void DeviceBackend<T>::run_blocks(const std::string& phase, const Arguments<T>& a, const Body<T>& body, Checks checks) {
   if (!deterministic_) {
     launch_blocks(phase, a, body);
-    return watch(body, Checks::stencil);
+    return watch(body, checks);
   }
   exponents_.fill(0x7f);  // none
   Arguments<T> b = a;
   for (b.exact_phase = exact_measure; b.exact_phase < exact_take; ++b.exact_phase) {
     launch_blocks(phase, b, body);
-    watch(body, Checks::stencil);
+    watch(body, checks);
   }
   launch(phase, b, nodes());
 }
@@ -144,9 +144,11 @@ void DeviceBackend<T>::look() {
   if (found == watched.end()) throw std::logic_error("a phase that nobody watches has reported a particle");
   const Body<T>& body = bodies_[static_cast<std::size_t>(found->body)];
   const auto checks = static_cast<Checks>(found->checks);
+  if (checks == Checks::grip) refuse_told(body, particle);
   throw RunFailure(checks == Checks::temperature   ? failed_temperature(body, particle)
                    : checks == Checks::deformation ? failed_deformation(body, particle)
                    : checks == Checks::position    ? failed_position(body, particle)
+                   : checks == Checks::force       ? failed_force(body, particle)
                                                    : failed_stencil(body, particle));
 }
 

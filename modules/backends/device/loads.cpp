@@ -1,30 +1,69 @@
 #include "backends/device/device_backend.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "experiment/axis_names.hpp"
+#include "simulation/grips.hpp"
+#include "simulation/imposed_value.hpp"
 
 namespace mpm::device {
+namespace {
+
+/// Fills in the particles of a body as their loads see them, from values that it waits for.
+template <class T>
+class LoadedParticles {
+ public:
+  explicit LoadedParticles(const Body<T>& body)
+      : body_(body),
+        position_(body.arrays.read("position")),
+        velocity_(body.arrays.read("velocity")),
+        deformation_(body.arrays.read("deformation")) {}
+
+  void read(int p, LoadedParticle& particle) const {
+    const auto n = static_cast<std::size_t>(body_.count), D = static_cast<std::size_t>(body_.dimension);
+    const auto at = static_cast<std::size_t>(p);
+    particle.x = particle.X = body_.vector(position_, at);
+    particle.v = body_.vector(velocity_, at);
+    for (std::size_t c = 0; c < D && !body_.initial_position.empty(); ++c)
+      particle.X[c] = body_.initial_position[at * D + c];
+    for (std::size_t k = 0; k < D * D && !deformation_.empty(); ++k) particle.F[k] = deformation_[k * n + at];
+  }
+
+ private:
+  const Body<T>& body_;
+  std::vector<T> position_, velocity_, deformation_;
+};
+
+}  // namespace
 
 template <class T>
-void DeviceBackend<T>::scatter_grips(Body<T>& body, double end) {
-  look();  // what the particles are told may be impossible only because they are
-  const std::size_t D = experiment_.dimension;
-  const std::vector<T> position = body.arrays.read("position"), numbers = body.arrays.read("grip");
-  std::vector<T> told(position.size());
-  for (std::size_t p = 0; p < numbers.size(); ++p) {
-    if (!(numbers[p] > T(0))) continue;
-    const Vector3 x = body.vector(position, p);
-    Vector3 X = x;
-    for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c) X[c] = body.initial_position[p * D + c];
-    const Vector3 velocity =
-        velocity_of(experiment_, experiment_.grips[static_cast<std::size_t>(numbers[p]) - 1], x, X, end);
-    for (std::size_t c = 0; c < D; ++c) told[c * numbers.size() + p] = static_cast<T>(velocity[c]);
-  }
-  body.arrays.write("told_velocity", told);
+void DeviceBackend<T>::scatter_grips(const Body<T>& body) {
+  run("tell_gripped", arguments_of(body), body, Checks::grip);
   for (std::size_t k = 0; k < experiment_.grips.size(); ++k) {
     Arguments<T> a = arguments_of(body);
     a.grip = static_cast<int>(k);
     run_blocks("scatter_grip", a, body);
   }
+}
+
+template <class T>
+void DeviceBackend<T>::refuse_told(const Body<T>& body, int p) const {
+  const auto at = static_cast<std::size_t>(p);
+  LoadedParticle particle;
+  LoadedParticles<T>(body).read(p, particle);
+  const Grip& grip = experiment_.grips[static_cast<std::size_t>(body.arrays.read("grip")[at]) - 1];
+  velocity_of(experiment_, grip, particle.x, particle.X, end_);
+  // The host found a number, which a kernel in float did not, at the very end of the range.
+  const Vector3 told = body.vector(body.arrays.read("told_velocity"), at);
+  std::size_t c = 0;
+  while (c < 2 && (!grip.held[c] || std::isfinite(told[c]))) ++c;
+  throw ImposedValueFailure(experiment_, {grip.pointer + "/velocity/" + std::to_string(c),
+                                          std::string("velocity along ") + axis_names[c],
+                                          "m/s",
+                                          told[c],
+                                          end_,
+                                          {particle.x.begin(), particle.x.begin() + experiment_.dimension}});
 }
 
 template <class T>
@@ -45,15 +84,13 @@ void DeviceBackend<T>::note_gripped(const Body<T>& body, const StepInfo& step, c
 
 template <class T>
 void DeviceBackend<T>::scatter_loads(Body<T>& body, Arguments<T> a, double time) {
-  const BodyLoads& loads = loads_[static_cast<std::size_t>(&body - bodies_.data())];
+  const BodyLoads& loads = loads_of(body);
+  if (loads.gives(ExternalForce::body_force)) run_blocks("scatter_body_force", a, body, Checks::force);
   FirstFailure failures;
   for (const ExternalForce kind : external_forces) {
-    if (!loads.gives(kind)) continue;
+    if (kind == ExternalForce::body_force || !loads.gives(kind)) continue;
     look();  // a particle that has failed has no place to evaluate formulas at
-    for (const int given : {body.number("load_force"), body.number("load_moment")})
-      if (given >= 0) body.arrays.fill(given, 0);
-    kind == ExternalForce::body_force ? evaluate_body_force(body, loads, time, failures)
-                                      : evaluate_loads(body, loads, kind, time, failures);
+    evaluate_loads(body, loads, kind, time, failures);
     a.load_field = number_of(fields_[body.field].arrays.fields(), field_of(kind));
     run_blocks("scatter_load", a, body);
   }
@@ -61,46 +98,36 @@ void DeviceBackend<T>::scatter_loads(Body<T>& body, Arguments<T> a, double time)
 }
 
 template <class T>
-void DeviceBackend<T>::evaluate_body_force(Body<T>& body, const BodyLoads& loads, double time, FirstFailure& failures) {
-  const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
-  const std::vector<T> position = body.arrays.read("position"), around = body.arrays.read("size");
-  std::vector<double> x(D * n), X(D * n), values(D * n);
-  PointArrays at;
-  std::array<double*, 3> result{};
-  for (std::size_t c = 0; c < D; ++c) {
-    for (std::size_t p = 0; p < n; ++p) {
-      x[c * n + p] = body.component(position, p, c);
-      X[c * n + p] = body.initial_position.empty() ? x[c * n + p] : body.initial_position[p * D + c];
-    }
-    at.x[c] = x.data() + c * n, at.X[c] = X.data() + c * n, result[c] = values.data() + c * n;
-  }
-  loads.accelerations(n, nullptr, at, time, result, failures);
-  std::vector<T> force(D * n);
-  for (std::size_t k = 0; k < D * n; ++k)
-    force[k] = static_cast<T>(double(body.mass) * (around.empty() ? 1.0 : double(around[k % n])) * values[k]);
-  body.arrays.write("load_force", force);
-}
-
-template <class T>
 void DeviceBackend<T>::evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time,
                                       FirstFailure& failures) {
   const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
-  const std::vector<T> position = body.arrays.read("position"), velocity = body.arrays.read("velocity"),
-                       deformation = body.arrays.read("deformation");
+  const LoadedParticles<T> particles(body);
   std::vector<T> force(D * n), moment(D * D * n);
-  const auto read = [&](int p, LoadedParticle& particle) {
-    particle.x = particle.X = body.vector(position, static_cast<std::size_t>(p));
-    particle.v = body.vector(velocity, static_cast<std::size_t>(p));
-    for (std::size_t c = 0; c < D && !body.initial_position.empty(); ++c)
-      particle.X[c] = body.initial_position[p * D + c];
-    for (std::size_t k = 0; k < D * D; ++k) particle.F[k] = deformation[k * n + p];
-  };
+  const auto read = [&](int p, LoadedParticle& particle) { particles.read(p, particle); };
   const auto give = [&](int p, const LoadCoefficients& given) {
     for (std::size_t c = 0; c < D; ++c) force[c * n + p] = static_cast<T>(given.b[c]);
     for (std::size_t k = 0; k < D * D; ++k) moment[k * n + p] = static_cast<T>(given.S[k]);
   };
   loads.evaluate(kind, body.count, nullptr, time, read, give, failures);
   body.arrays.write("load_force", force), body.arrays.write("load_moment", moment);
+}
+
+/// Of all loads on a body that are not finite, the failure is that of the particle with the lowest index: loads at points are
+/// looked at too, as they are evaluated after those by mass.
+template <class T>
+Failure DeviceBackend<T>::failed_force(const Body<T>& body, int p) const {
+  const BodyLoads& loads = loads_of(body);
+  const LoadedParticles<T> particles(body);
+  LoadedParticle failed;
+  particles.read(p, failed);
+  FirstFailure failures;
+  loads.note_acceleration(static_cast<std::size_t>(p), failed.x, failed.X, time_, failures);
+  for (const ExternalForce kind : external_forces)
+    if (kind != ExternalForce::body_force && loads.gives(kind))
+      loads.evaluate(
+          kind, body.count, nullptr, time_, [&](int k, LoadedParticle& particle) { particles.read(k, particle); },
+          [](int, const LoadCoefficients&) {}, failures);
+  return *failures.first();
 }
 
 template class DeviceBackend<float>;

@@ -54,7 +54,7 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
     run_blocks("scatter", a, body);
     if (force) scatter_loads(body, a, step.time);
     if (heat) run_blocks("scatter_heat", a, body);
-    if (enters && !experiment_.grips.empty()) scatter_grips(body, step.time + step.dt);
+    if (enters && !experiment_.grips.empty()) scatter_grips(body);
     if (heat && plan_.has_heat_ledger()) sum_over_particles("heat_of_particles", body, of_heat);
     if (accounted_ && enters) sum_over_particles("energy_of_particles", body, energy);
     if (accounted_ && enters) sum<4>("momentum_of_particles", arguments_of(body), body.count, unbalanced);

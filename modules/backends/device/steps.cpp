@@ -8,6 +8,8 @@ namespace mpm::device {
 /// decides by, the estimate of the step and the norms of a filter's loop, does not wait.
 template <class T>
 void DeviceBackend<T>::execute(const Pass& pass, const StepInfo& step) {
+  time_ = step.time, end_ = step.time + step.dt;
+  formulas_.take(time_, end_);  // before the launches of the step, and outside of its graph
   const bool decides = pass.has(Act::estimate_time_step) || step.filtered;
   if (uses_graphs_ && !decides && !device_->measures()) {
     waiting_.push_back({&pass, step});

@@ -11,7 +11,7 @@ namespace mpm::device {
 inline constexpr int block_cells = 4;
 
 /// The number of arrays that a table has room for; the host checks it.
-inline constexpr int most_fields = 40;
+inline constexpr int most_fields = 64;
 
 /// The nodes, one index after another, that are active together (kernels/active_nodes.hpp).
 inline constexpr int nodes_of_run = 16;
@@ -39,6 +39,7 @@ struct ParticleArrays {
   int count, stride;
   T mass, volume;         ///< values of a particle, kg and m^3; of size 1
   T half_size;            ///< half a side of the undeformed particle's box, cells
+  int body;               ///< its number, by which formulas know it
   int frozen;             ///< 1 where particles and domains stay as they are
   T* field[most_fields];  ///< numbered as Scene::Particle; the fields of one plugin's state lie one behind another
   HeatOfBody<T> heat;     ///< filled in scenes with temperature
@@ -131,8 +132,9 @@ struct Arguments {
   const T* wall_shares;             ///< shares of heat through a wall: that of its node, of the next one inward ...
   const HeatBox<T>* heat_boxes;
   int wall_share_count, heat_box_count;
-  T strain_cap;   ///< of contact (experiment/contact_settings.hpp), 0 for none
-  T wall_beyond;  ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
+  const T* formula_numbers;  ///< what formulas at particles take, for the step's time (ParticleFormulas)
+  T strain_cap;              ///< of contact (experiment/contact_settings.hpp), 0 for none
+  T wall_beyond;             ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
   bool gravity_has_potential[3];
   // These are what this phase works on.
   ParticleArrays<T> particles;

@@ -30,6 +30,11 @@ MPM_HD void store_matrix(T* array, int stride, int index, const Mat<D, T>& value
   for (int k = 0; k < D * D; ++k) array[k * stride + index] = value.m[k];
 }
 
+/// Whether a value is finite.
+MPM_HD bool is_number(double value) {
+  return value - value == 0;
+}
+
 /// Loads the corners of a particle's domain, [corner][D].
 template <int D, class T>
 MPM_HD void load_corners(const T* array, int stride, int index, Vec<D, T>* corners) {

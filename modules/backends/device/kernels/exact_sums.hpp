@@ -22,11 +22,6 @@ inline constexpr int no_exponent = 1 << 20;
 /// The least exponent of a channel, so that its fine step is a normal number.
 inline constexpr int least_exponent = -900;
 
-/// Whether a value is finite.
-MPM_HD bool is_number(double value) {
-  return value - value == 0;
-}
-
 /// The coarse step of a channel: the power of two above its largest value, over 2^40.
 MPM_HD double coarse_step(int negative_exponent) {
   return MPM_MATH(ldexp)(1.0, 1 - negative_exponent - exact_bits);

@@ -49,11 +49,11 @@ struct NoParticleFields {
   static constexpr int load_force = -1, load_moment = -1;  ///< b and S of a load, as the host evaluated them
   static constexpr int second_moment = -1;                 ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;
-  static constexpr int initial_position = -1;   ///< kept where the law of contact has springs
+  static constexpr int initial_position = -1;   ///< kept where the law of contact has springs or a formula asks
   static constexpr int contact_state = -1;      ///< what the law of contact keeps
   static constexpr int contact_gain = -1;       ///< what the last step has added to it
   static constexpr int grip = -1;               ///< number of the grip that moves the particle, from 1; 0: none
-  static constexpr int told_velocity = -1;      ///< velocity that its grip gives it, as the host evaluated it
+  static constexpr int told_velocity = -1;      ///< velocity that its grip gives it
   static constexpr int gathered_velocity = -1;  ///< velocity that it would have without it
 };
 

@@ -7,6 +7,25 @@
 
 namespace mpm::device {
 
+/// Finds the velocity that each gripped particle is told to have at the end of the step.
+template <class Scene>
+MPM_HD void tell_gripped(const Team& team, const Arguments<typename Scene::Scalar>& a) {
+  using T = typename Scene::Scalar;
+  using P = typename Scene::Particle;
+  constexpr int D = Scene::dimension;
+  for_each_index(team, a.particles.count, [&]([[maybe_unused]] int p) {
+    if constexpr (P::grip >= 0) {
+      const int grip = int(a.particles.field[P::grip][p]) - 1;
+      if (grip < 0) return;
+      const FormulaPlace<Scene> place(a.particles, p);
+      const Vec<D, T> told = Scene::velocity_of_grip(grip, place.x, place.X, a.formula_numbers);
+      store(a.particles.field[P::told_velocity], a.particles.stride, p, told);
+      for (int c = 0; c < D; ++c)
+        if (a.grips[grip].given >> c & 1 && !is_number(double(told[c]))) return report(a, p);
+    }
+  });
+}
+
 template <class Scene>
 inline constexpr int scatter_grip_scalars = (2 * Scene::dimension + 1) * Tile<Scene::dimension>::nodes;
 

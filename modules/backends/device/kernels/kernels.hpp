@@ -58,6 +58,9 @@
   MPM_DEVICE_PHASE(mpm_order_blocks, order_blocks<Scene>, 1)                                  \
   MPM_DEVICE_PHASE(mpm_end_sort, end_sort<Scene>, 1)
 
+#define MPM_DEVICE_BODY_FORCE_ENTRIES \
+  MPM_DEVICE_PHASE(mpm_scatter_body_force, scatter_body_force<Scene>, mpm::device::load_scalars<Scene>)
+
 #define MPM_DEVICE_LOAD_ENTRIES \
   MPM_DEVICE_PHASE(mpm_scatter_load, scatter_load<Scene>, mpm::device::load_scalars<Scene>)
 
@@ -84,6 +87,7 @@
   MPM_DEVICE_PHASE(mpm_held, held<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::support_sums>))
 
 #define MPM_DEVICE_GRIP_ENTRIES                                                                     \
+  MPM_DEVICE_PHASE(mpm_tell_gripped, tell_gripped<Scene>, 1)                                        \
   MPM_DEVICE_PHASE(mpm_scatter_grip, scatter_grip<Scene>, mpm::device::scatter_grip_scalars<Scene>) \
   MPM_DEVICE_PHASE(mpm_given_to_gripped, given_to_gripped<Scene>, (mpm::device::sum_scalars<Scene, 7>))
 
