@@ -9,6 +9,7 @@ using namespace mpm::test;
 namespace {
 
 void check(const Mix& mix) {
+  if (!is_chosen_check()) return;
   INFO(mix.name());
   Scene reference(mix.text(), {"/backend=reference"});
   reference.run();
@@ -16,6 +17,9 @@ void check(const Mix& mix) {
     DeviceScene device(mix.text(), precision);
     device.run();
     CHECK(scene_difference(reference, device) <= device_bound(mix) * epsilon_of(precision));
+    CHECK(difference(contact_counts(reference.simulation.backend(), reference.experiment),
+                     contact_counts(device.simulation.backend(), device.experiment),
+                     1.0) <= (precision == "double" ? 1e-9 : 1e-2));
     CHECK(difference_at_rigid_bodies(reference.simulation.backend(), device.simulation.backend(),
                                      reference.experiment) <= (precision == "double" ? 1e-11 : 1e-2));
   }
