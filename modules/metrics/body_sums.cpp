@@ -128,6 +128,19 @@ void add_heat(const BodyView& view, std::size_t p, Totals& totals) {
   totals.highest_temperature = largest_of(totals.highest_temperature, T);
 }
 
+void add_sums(const Totals& more, Totals& totals) {
+  for (double Totals::*sum :
+       {&Totals::mass, &Totals::kinetic, &Totals::strain, &Totals::gravitational, &Totals::momentum_scale,
+        &Totals::angular_momentum_scale, &Totals::heat_content, &Totals::latent_heat})
+    totals.*sum += more.*sum;
+  for (std::array<double, 3> Totals::*vector : {&Totals::momentum, &Totals::angular_momentum, &Totals::centre_of_mass})
+    for (std::size_t c = 0; c < 3; ++c) (totals.*vector)[c] += (more.*vector)[c];
+  for (double Totals::*least : {&Totals::smallest_volume_ratio, &Totals::lowest_temperature})
+    totals.*least = smallest_of(totals.*least, more.*least);
+  for (double Totals::*most : {&Totals::largest_volume_ratio, &Totals::largest_speed, &Totals::highest_temperature})
+    totals.*most = largest_of(totals.*most, more.*most);
+}
+
 void refer_to_centre_of_mass(Totals& totals) {
   for (double& x : totals.centre_of_mass) x /= totals.mass;
   const auto orbital = cross(totals.centre_of_mass.data(), totals.momentum.data());

@@ -57,6 +57,8 @@ double second_moment(const Experiment& experiment, const BodyState& state, std::
 Totals no_totals(const Experiment& experiment);
 void add_particle(const BodyView& view, std::size_t p, Totals& totals);
 void add_heat(const BodyView& view, std::size_t p, Totals& totals);
+/// Adds the sums of some particles to those of others, before either is referred to the centre of mass.
+void add_sums(const Totals& more, Totals& totals);
 /// Turns sums into the centre of mass and the angular momentum about it.
 void refer_to_centre_of_mass(Totals& totals);
 

@@ -1,6 +1,6 @@
 #pragma once
 // Totals of a run at one time: energies, momenta, volume ratios, errors against the exact solution. Computed from the
-// particles as doubles, the same for every backend.
+// particles as doubles, the same for every backend, or taken from one that offers them (simulation/offers_totals.hpp).
 
 #include <memory>
 #include <string>
@@ -46,6 +46,8 @@ class Metrics {
 
  private:
   void add_body(int body, Totals& totals) const;
+  /// Adds the body's sums where the backend offers them and nothing else of its state is wanted.
+  bool add_offered(int body, Totals& totals) const;
   void add_errors(int body, const BodyState& state, Totals& totals) const;
 
   const Simulation& simulation_;

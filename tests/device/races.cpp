@@ -100,6 +100,7 @@ std::vector<std::string> races_of(const Mix& mix, const std::string& precision, 
     simulation.backend().measure_phases(true);
     for (int step = 0; step < steps; ++step) simulation.step();
     simulation.backend().body_state(0);
+    const Metrics measured(simulation);
     if (launched)
       for (const auto& [phase, seconds] : simulation.backend().phase_seconds()) launched->insert(phase);
   }

@@ -225,6 +225,7 @@ std::vector<EntryGroup> entry_groups(const Choice& choice) {
   const bool heat = has_temperature(choice), ledger = keeps_ledger(choice);
   std::vector<EntryGroup> groups{{"MPM_DEVICE_ENTRIES", 1},
                                  {"MPM_DEVICE_SUM_ENTRIES", 1},
+                                 {"MPM_DEVICE_TOTALS_ENTRIES", 1},
                                  {"MPM_DEVICE_SORT_ENTRIES", 1},
                                  {"MPM_DEVICE_APART_ENTRIES", apart},
                                  {"MPM_DEVICE_BODY_FORCE_ENTRIES", has_body_force(choice)},

@@ -23,6 +23,7 @@
 #include "backends/device/step_graphs.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/loads.hpp"
+#include "simulation/offers_totals.hpp"
 #include "simulation/reaction_impulse.hpp"
 
 namespace mpm::device {
@@ -44,7 +45,7 @@ using Tally = std::shared_ptr<std::array<double, count>>;
 
 /// Its methods are defined by physics, one file each beside this one.
 template <class T>
-class DeviceBackend final : public Backend {
+class DeviceBackend final : public Backend, public OffersTotals {
  public:
   DeviceBackend(const Experiment& experiment, const Plan& plan, const std::vector<SeededBody>& seeded,
                 const DeviceSetup& setup);
@@ -72,6 +73,9 @@ class DeviceBackend final : public Backend {
   void save(ArchiveWriter& archive) const override;
   void restore(ArchiveReader& archive) override;
   BodyState body_state(int index) const override;
+
+  // ---- totals.cpp
+  std::optional<Totals> totals_of(int body) const override;
 
  private:
   // ---- steps.cpp
@@ -257,6 +261,10 @@ class DeviceBackend final : public Backend {
   /// stencil has none: the next pass that needs it says so.
   std::vector<double> second_moments(const Body<T>& body) const;
 
+  // ---- totals.cpp
+  /// Runs a phase that makes sums and largest values of a body's particles, and leaves them at a place of `totals_`.
+  void sum_particles(const std::string& phase, const Body<T>& body, int count, int maxima, int place) const;
+
   // ---- small helpers
   bool periodic(int axis) const { return scene_.walls[axis][0] == wall_periodic; }
   int nodes() const { return scene_.node_count; }
@@ -306,6 +314,8 @@ class DeviceBackend final : public Backend {
       normal_parameters_, detection_parameters_;
   DeviceArray<Stopped> ignored_stop_;
   DeviceArray<double> partial_sums_;
+  static constexpr int count_of_totals = 24;
+  DeviceArray<double> totals_;  ///< of one body (kernels/totals_list.hpp)
   bool deterministic_;          ///< particles are summed to the same bits in any order of lanes
   DeviceArray<int> exponents_;  ///< see kernels/exact_sums.hpp
   DeviceArray<unsigned long long> exact_sums_;

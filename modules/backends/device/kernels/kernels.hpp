@@ -18,6 +18,7 @@
 #include "backends/device/kernels/rigid.hpp"
 #include "backends/device/kernels/scatter.hpp"
 #include "backends/device/kernels/sorting.hpp"
+#include "backends/device/kernels/totals.hpp"
 
 #define MPM_DEVICE_ENTRIES                                                                \
   MPM_DEVICE_PHASE(mpm_forget, forget<Scene>, 1)                                          \
@@ -46,6 +47,11 @@
   MPM_DEVICE_PHASE(mpm_add_teams, add_teams<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::most_sums>)) \
   MPM_DEVICE_PHASE(mpm_largest_of_teams, largest_of_teams<Scene>, (mpm::device::sum_scalars<Scene, 3>))        \
   MPM_DEVICE_PHASE(mpm_largest_speed, largest_speed<Scene>, (mpm::device::sum_scalars<Scene, 3>))
+
+#define MPM_DEVICE_TOTALS_ENTRIES                                               \
+  MPM_DEVICE_PHASE(mpm_totals_of_motion, totals_of_motion<Scene>,               \
+                   (mpm::device::sum_scalars<Scene, mpm::device::motion_sums>)) \
+  MPM_DEVICE_PHASE(mpm_add_particles, add_particles<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::motion_sums>))
 
 #define MPM_DEVICE_SORT_ENTRIES                                                               \
   MPM_DEVICE_PHASE(mpm_find_blocks, find_blocks<Scene>, 1)                                    \
@@ -132,7 +138,8 @@
   MPM_DEVICE_PHASE(mpm_mass_of_box, mass_of_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
   MPM_DEVICE_PHASE(mpm_warm_box, warm_box<Scene>, (mpm::device::sum_scalars<Scene, 1>))                     \
   MPM_DEVICE_PHASE(mpm_warm, warm<Scene>, 1)                                                                \
-  MPM_DEVICE_PHASE(mpm_gather_heat, gather_heat<Scene>, 1)
+  MPM_DEVICE_PHASE(mpm_gather_heat, gather_heat<Scene>, 1)                                                  \
+  MPM_DEVICE_PHASE(mpm_totals_of_heat, totals_of_heat<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::heat_sums>))
 
 #define MPM_DEVICE_HEAT_LEDGER_ENTRIES                                                                          \
   MPM_DEVICE_PHASE(mpm_heat_of_nodes, heat_of_nodes<Scene>, (mpm::device::sum_scalars<Scene, 1>))               \
@@ -157,6 +164,8 @@
 
 #define MPM_DEVICE_MELTING_ENTRIES(n) MPM_DEVICE_PHASE(mpm_change_phase_##n, change_phase<Scene##n>, 1)
 
-#define MPM_DEVICE_MATERIAL_ENTRIES(n)                  \
-  MPM_DEVICE_PHASE(mpm_stress_##n, stress<Scene##n>, 1) \
+#define MPM_DEVICE_MATERIAL_ENTRIES(n)                                         \
+  MPM_DEVICE_PHASE(mpm_stress_##n, stress<Scene##n>, 1)                        \
+  MPM_DEVICE_PHASE(mpm_totals_of_state_##n, totals_of_state<Scene##n>,         \
+                   (mpm::device::sum_scalars<Scene, mpm::device::state_sums>)) \
   MPM_DEVICE_PHASE(mpm_wave_speed_##n, wave_speed<Scene##n>, 1)

@@ -22,6 +22,17 @@ struct Adding {
     for (int k = count - maxima; k < count; ++k) values[k] = more[k] > values[k] ? more[k] : values[k];
   }
 };
+/// Adds sums whose first value is the number of particles, and takes of each of the last `maxima` the larger one, or what
+/// is not a number.
+struct AddingParticles {
+  MPM_HD static void join(double* values, const double* more, int count, int maxima) {
+    if (!(more[0] > 0)) return;
+    const bool first = !(values[0] > 0);
+    for (int k = 0; k < count - maxima; ++k) values[k] += more[k];
+    for (int k = count - maxima; k < count; ++k)
+      if (first || more[k] > values[k] || more[k] != more[k]) values[k] = more[k];
+  }
+};
 /// Takes all values of the one whose first is larger; the one before where they are equal.
 struct TakingLargest {
   MPM_HD static void join(double* values, const double* more, int count, int) {
