@@ -203,7 +203,7 @@ void BodyLoads::accelerations(std::size_t count, const std::int32_t* ids, const 
       if (at.x[c]) x[c] = at.x[c][p];
       if (at.X[c]) X[c] = at.X[c][p];
     }
-    if (!finite(sum)) note_acceleration(ids ? static_cast<std::size_t>(ids[p]) : p, x, X, time, failures);
+    if (!finite(sum)) note_acceleration(static_cast<std::size_t>(ids[p]), x, X, time, failures);
   }
 }
 

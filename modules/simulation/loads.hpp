@@ -49,8 +49,8 @@ class BodyLoads {
   bool accelerations_use_initial_position() const;
   /// The acceleration of a particle by forces per mass, N/kg, at the time of a step's begin. Notes one that is not finite.
   Vector3 acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time, FirstFailure& failures) const;
-  /// The same of many particles, an array a component; ids[p] is the index of seeding, or p itself where ids is null. In
-  /// the precision of the places; lanes hold twice as many floats.
+  /// The same of many particles, an array a component; ids[p] is the index of seeding. In the
+  /// precision of the places; lanes hold twice as many floats.
   template <class T>
   void accelerations(std::size_t count, const std::int32_t* ids, const PointArrays<T>& at, double time,
                      const std::array<T*, 3>& result, FirstFailure& failures) const;

@@ -459,8 +459,8 @@ class Group:
             numbers = [n for n in self.numbers_that_come_to(case, left) if came[n] < most and (n, case) not in tried]
             if not numbers:
                 continue
-            killed = self.killed_by(case, numbers, jobs)
-            came.update(numbers)
+            killed, passed = self.killed_by(case, numbers, jobs)
+            came.update(passed)
             tried.update((number, case) for number in numbers)
             self.say(f"mutation: {len(killed)} of {len(numbers)} killed by {case.name} ({case.title} {case.check or ''})")
             for number, status in killed.items():
@@ -477,23 +477,26 @@ class Group:
         return [n for n in left if n in held and self.noted_as[n] in case.comes_to] if case.usable else []
 
     def killed_by(self, case, numbers, jobs):
-        """What became of those that do not pass, by their numbers. The first process is the unchanged program."""
+        """What became of those that do not pass, by their numbers, and which ones pass. The first process is the unchanged
+        program. All find the programs of the device that were there before them."""
+        programs = self.programs_of_mutant()
         listed, ended = self.own("numbers"), self.own("ended")
         listed.write_text(" ".join(map(str, [0, *numbers])))
         ended.unlink(missing_ok=True)
         # The time is that of the process which waits for the others.
-        self.run(case, self.program_of(case.suite), 3600, self.programs_kept, MPM_MUTANTS=str(listed),
+        self.run(case, self.program_of(case.suite), 3600, programs, MPM_MUTANTS=str(listed),
                  MPM_MUTANTS_ENDED=str(ended), MPM_MUTANTS_AT_ONCE=str(jobs), MPM_MUTANT_SECONDS=str(10 * math.ceil(case.seconds) + 5))  # fmt: skip
         if not ended.is_file():  # it makes no scene of the device
             return self.killed_one_by_one(case, numbers)
         statuses = dict(map(int, line.split()) for line in ended.read_text().splitlines())
         if statuses.get(0) != 0:
             self.say(f"mutation: {case.name} ({case.title}) fails on the unchanged program where processes share its beginning")
-            return {}
+            return {}, []
         signals = {n: os.WTERMSIG(status) for n, status in statuses.items() if os.WIFSIGNALED(status)}
         # One that has slept too long may have met a machine with much to do.
-        return {n: Result.TIMED_OUT if signals.get(n) in (signal.SIGXCPU, signal.SIGKILL) else Result.KILLED
-                for n, status in statuses.items() if status != 0 and signals.get(n) != signal.SIGALRM}  # fmt: skip
+        killed = {n: Result.TIMED_OUT if signals.get(n) in (signal.SIGXCPU, signal.SIGKILL) else Result.KILLED
+                  for n, status in statuses.items() if status != 0 and signals.get(n) != signal.SIGALRM}  # fmt: skip
+        return killed, [n for n in numbers if statuses.get(n) == 0]
 
     def killed_one_by_one(self, case, numbers):
         killed = {}
@@ -501,7 +504,7 @@ class Group:
             code = self.run(case, self.program_of(case.suite), 10 * case.seconds + 5, self.programs_of_mutant(), MPM_MUTANT=str(number))
             if code != 0:
                 killed[number] = Result.TIMED_OUT if code is None else Result.KILLED
-        return killed
+        return killed, [number for number in numbers if number not in killed]
 
     def result_alone(self, mutant):
         objects = [name for name in self.chosen_objects({mutant.file}) if not self.build.test_of(name)]

@@ -1,7 +1,7 @@
 #pragma once
 // The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
 // libcuda's, or the host's. Particles and nodes stay on the device. Once a step the host takes what phases have
-// summed.
+// summed; it evaluates loads at points, walls and boxes, and reads particles in a step for the first of these alone.
 
 #include <array>
 #include <memory>
@@ -166,7 +166,7 @@ class DeviceBackend final : public Backend, public OffersTotals {
   void scatter_loads(Body<T>& body, Arguments<T> a, double time);
   void evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time, FirstFailure& failures);
   const BodyLoads& loads_of(const Body<T>& body) const { return loads_[static_cast<std::size_t>(body.number_of_body)]; }
-  /// Reports the first load of a body that is not finite, after a kernel has found the force by mass on a particle to be
+  /// Returns the first load of a body that is not finite, after a kernel has found the force by mass on a particle to be
   /// none.
   Failure failed_force(const Body<T>& body, int p) const;
 

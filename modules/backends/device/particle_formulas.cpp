@@ -52,10 +52,8 @@ class FunctionText {
     return "numbers[" + std::to_string(numbers_.size() - 1) + "]";
   }
 
-  std::string variable(int variable) const {
-    const int axis = variable % 3;
-    if (axis >= dimension_) return "Scalar(0)";
-    return (variable < 3 ? "x[" : "X[") + std::to_string(axis) + "]";
+  static std::string variable(int variable) {
+    return (variable < 3 ? "x[" : "X[") + std::to_string(variable % 3) + "]";
   }
 
   /// An operation on the values with these names.

@@ -2,7 +2,7 @@
 // The formulas that kernels evaluate at particles. The composer writes each as a function of the scene, a line an
 // operation. What does not differ from particle to particle, numbers in the file and what follows from the time alone,
 // is found by the host in double precision and handed over as an array: so a graph may be launched at another time, and
-// another number in the file asks for no other program.
+// another number in the file asks for no other program, unless it is an exponent, a one, or becomes equal to another.
 
 #include <map>
 #include <string>
