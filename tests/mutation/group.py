@@ -190,7 +190,7 @@ class Group:
         """Of what is made from the files: libraries that include one in their own text, the cpu backend in the chosen
         dimensions and precisions, the device backend for its own files, tests that include one or a plugin in their own text."""
         chosen = []
-        for name in sorted(set().union(*(self.build.objects_of.get(file, ()) for file in files))):
+        for name in sorted(set(self.of_device(files)).union(*(self.build.objects_of.get(file, ()) for file in files))):
             source = os.path.relpath(self.build.source_of[name], self.build.tree)
             found = INSTANTIATION.search(name)
             if name.startswith("tests/"):
