@@ -210,7 +210,8 @@ class Together:
             whole = {int(caller[1])} if caller else set()
         noted_as = self.expression_of()
         whole |= {noted_as[number] for number in whole & noted_as.keys()}
-        named |= {number for number, noted in noted_as.items() if noted in whole}
+        if not named:  # where a mutant is named too, the expression around it may be right without that mutant
+            named = {number for number, noted in noted_as.items() if noted in whole}
         lines = {int(line) for line in re.findall(rf"(?m)^unmarked {re.escape(self.mutants[0].file)}:(\d+):\d+: error: ", output)}
         if not named and not errors:  # of an array the compiler names the whole line
             named = {number for number, m in enumerate(self.mutants, self.first) if m.line in lines}
