@@ -54,10 +54,11 @@ std::vector<Coordinates> nodes_between(const Coordinates& lower, const Coordinat
   return nodes;
 }
 
-/// Lets particles of the second block give to each node of its tile, and to the grid's corners, and compares what has
-/// arrived and which runs are active.
+/// Lets particles of the second block give to each node of its tile, and to the grid's corners, or to nothing, and compares
+/// what has arrived and which runs are active.
 template <int D, int Channels>
-void check_tile(const Coordinates& cells, const Coordinates& padding, const Coordinates& first_cell, int lanes) {
+void check_giving(const Coordinates& cells, const Coordinates& padding, const Coordinates& first_cell, int lanes,
+                  bool gives) {
   BareGrid grid(D, cells, padding);
   device::Arguments<double>& a = grid.a;
   std::vector<Coordinates> given;
@@ -70,9 +71,12 @@ void check_tile(const Coordinates& cells, const Coordinates& padding, const Coor
       expected_active[grid.index(node) / device::nodes_of_run] = 1;
     }
   if (given.empty()) return;
+  if (!gives) given.clear();
   const std::size_t of_tile = given.size();
-  given.push_back({-a.padding[0], -a.padding[1], -a.padding[2]});
-  given.push_back({cells[0] + a.padding[0], cells[1] + a.padding[1], D == 3 ? cells[2] + a.padding[2] : 0});
+  if (gives) {
+    given.push_back({-a.padding[0], -a.padding[1], -a.padding[2]});
+    given.push_back({cells[0] + a.padding[0], cells[1] + a.padding[1], D == 3 ? cells[2] + a.padding[2] : 0});
+  }
   for (std::size_t k = of_tile; k < given.size(); ++k) expected_active[grid.index(given[k]) / device::nodes_of_run] = 1;
 
   const int others = 3, count = static_cast<int>(given.size());
@@ -100,6 +104,32 @@ void check_tile(const Coordinates& cells, const Coordinates& padding, const Coor
   INFO(cells[0] << " cells, block at " << first_cell[0] << ' ' << first_cell[1] << ' ' << first_cell[2]);
   CHECK(found == expected);
   CHECK(grid.active == expected_active);
+}
+
+template <int D, int Channels>
+void check_tile(const Coordinates& cells, const Coordinates& padding, const Coordinates& first_cell, int lanes) {
+  for (const bool gives : {true, false}) check_giving<D, Channels>(cells, padding, first_cell, lanes, gives);
+}
+
+/// Compares the numbers of nodes in and around a tile whose first cell is given.
+template <int D>
+void check_numbers(const Coordinates& first_cell) {
+  constexpr int side = 7;
+  for (const Coordinates& from : nodes_between({-2, -2, D == 3 ? -2 : 0}, {8, 8, D == 3 ? 8 : 0})) {
+    Coordinates node{};
+    bool inside = true;
+    int number = 0;
+    for (int c = 0, stride = 1; c < D; ++c, stride *= side) {
+      node[c] = first_cell[c] - 1 + from[c];
+      inside = inside && from[c] >= 0 && from[c] < side;
+      number += stride * from[c];
+    }
+    CHECK(device::Tile<D>::index(first_cell.data(), node.data()) == (inside ? number : -1));
+    if (!inside) continue;
+    Coordinates found{};
+    device::Tile<D>::coordinates(first_cell.data(), number, found.data());
+    CHECK(found == node);
+  }
 }
 
 /// All that a fold says.
@@ -222,6 +252,11 @@ void check_stencils() {
 TEST_CASE("a stencil has all its nodes, and says when one of them is beyond the grid", "[device]") {
   check_stencils<2>();
   check_stencils<3>();
+}
+
+TEST_CASE("a tile numbers the nodes from one before its block to two behind it", "[device]") {
+  check_numbers<2>({-4, 8, 0});
+  check_numbers<3>({4, -8, 12});
 }
 
 TEST_CASE("a block's particles give to all nodes of the grid, and the runs of its tile and theirs become active",
