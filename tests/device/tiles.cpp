@@ -25,7 +25,7 @@ class BareGrid {
       a.extent[c] = a.cells[c] + 1 + 2 * a.padding[c];
       a.node_count *= a.extent[c];
     }
-    active.assign(static_cast<std::size_t>(a.node_count / device::nodes_of_run + 1), 0);
+    active.assign(static_cast<std::size_t>(a.node_count) / device::nodes_of_run + 1, 0);
     a.grid.active = active.data();
   }
   bool holds(const Coordinates& node) const {
@@ -178,7 +178,6 @@ void count_run(const device::Team&, const device::Arguments<double>&) {
 /// What sorting kernels ask of a scene.
 struct SortedScene {
   using Scalar = double;
-  static constexpr int dimension = 3;
 };
 
 /// A scene of a shape of three nodes whose weights tell them apart.
