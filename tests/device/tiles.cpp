@@ -54,7 +54,7 @@ std::vector<Coordinates> nodes_between(const Coordinates& lower, const Coordinat
   return nodes;
 }
 
-/// Lets particles of the second block give to each node of its tile, and to the grid's corners, or to nothing, and compares
+/// Lets particles of the third block give to each node of its tile, and to the grid's corners, or to nothing, and compares
 /// what has arrived and which runs are active.
 template <int D, int Channels>
 void check_giving(const Coordinates& cells, const Coordinates& padding, const Coordinates& first_cell, int lanes,
@@ -80,9 +80,9 @@ void check_giving(const Coordinates& cells, const Coordinates& padding, const Co
   for (std::size_t k = of_tile; k < given.size(); ++k) expected_active[grid.index(given[k]) / device::nodes_of_run] = 1;
 
   const int others = 3, count = static_cast<int>(given.size());
-  std::vector<int> order{0, 1, 2}, begin{0, others, others + count};
+  std::vector<int> order{0, 1, 2}, begin{0, 1, others, others + count};
   for (int p = count - 1; p >= 0; --p) order.push_back(others + p);
-  std::array<int, 6> cell{40, 40, 40, first_cell[0], first_cell[1], first_cell[2]};
+  std::array<int, 9> cell{40, 40, 40, 40, 40, 40, first_cell[0], first_cell[1], first_cell[2]};
   a.blocks.order = order.data(), a.blocks.begin = begin.data(), a.blocks.cell = cell.data();
 
   std::vector<std::vector<double>> found(Channels, std::vector<double>(a.node_count, 0.0)), expected = found;
@@ -100,7 +100,7 @@ void check_giving(const Coordinates& cells, const Coordinates& padding, const Co
   };
   std::vector<double> shared(device::channels_together<D, Channels, double> * device::Tile<D>::nodes, std::nan(""));
   const device::Team team(shared.data(), 0, lanes, device::order_downwards);
-  device::scatter_block<D, Channels>(team, a, 1, channel.data(), contribute);
+  device::scatter_block<D, Channels>(team, a, 2, channel.data(), contribute);
   INFO(cells[0] << " cells, block at " << first_cell[0] << ' ' << first_cell[1] << ' ' << first_cell[2]);
   CHECK(found == expected);
   CHECK(grid.active == expected_active);
