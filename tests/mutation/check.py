@@ -217,6 +217,11 @@ class WritesThemTogether(unittest.TestCase):
         self.assertTrue(together.refuse("unchanged_8:1:3: error: not an integer constant\n"))
         self.assertEqual(together.numbers(), [7])
 
+    def test_a_refused_one_leaves_the_others_of_its_expression(self):
+        together = Together("#pragma once\nx = a + b;\n", mutants_of("file.hpp", "#pragma once\nx = a + b;\n"), first=7)
+        self.assertTrue(together.refuse("mutant_8:1:3: error: no match\nunchanged_8:1:3: error: no match\n"))
+        self.assertEqual(together.numbers(), [7, 9])
+
     def test_what_stands_behind_the_head_of_a_loop(self):
         text = "for (int i = 0; i < n; ++i) x[i] += y;\nif (a < b)\n  x -= f(c);\nelse\n  x *= 2;\n"
         mutants = mutants_of("file.hpp", text)
