@@ -103,6 +103,8 @@ inline std::vector<Mix> every_addition(int dimension) {
       beyond(of("[0.52, 0]", "[0.42, 0, 0]"), of("[1, 0]", "[1, 0, 0]")) + R"J(, "stiffness": )J" +
       of("[2e3, 1e3]", "[2e3, 1e3, 500]") + R"J(, "damping": )J" + of("[50, 100]", "[50, 100, 0]") +
       R"J(}, {"type": "body_force", "body": "b", "acceleration": )J" + of("[\"X\", \"t-y\"]", "[\"X\", \"t-y\", 1]") +
+      R"J(}, {"type": "force", "body": "b", "at": )J" +
+      of("[0.6, 0.37], \"force\": [5, \"9+20*t\"]", "[0.5, 0.3, 0.3], \"force\": [2, 9, \"-20*t\"]") +
       R"J(}], "node_conditions": [{"type": "slip", "axis": "y", "lower": )J" + of("[0.2, 0.3]", "[0.2, 0.1, 0.1]") +
       R"J(, "upper": )J" + of("[0.3, 0.4]", "[0.3, 0.2, 0.4]") + R"J(}, {"type": "prescribed", "lower": )J" +
       of("[0.7, 0.3]", "[0.5, 0.2, 0.3]") + R"J(, "upper": )J" + of("[0.8, 0.5]", "[0.6, 0.4, 0.4]") +
@@ -121,6 +123,7 @@ inline std::vector<Mix> every_addition(int dimension) {
   Mix exact = loaded;
   exact.contact = R"({"type": "coulomb", "normal": "widest_gap", "detection": "particle_surfaces"})";
   exact.overrides.push_back(deterministic_sums);
+  exact.overrides.push_back(set("/output/ledger_every", "3"));
   mixes.push_back(exact);
   if (flat) {
     Mix rings;

@@ -165,6 +165,9 @@ TEST_CASE("a race that is planted in a kernel is reported with its kernel, its p
                         order),
                ContainsSubstring("mpm_scatter, phase 1: ") && ContainsSubstring("shared memory, byte "));
   }
+  // Lanes that join their sums all add to the first one's: run one after the other, they make the right sum.
+  CHECK_THAT(found_in({"Join::join(of_lane + lane * count, ", "Join::join(of_lane, "}, 0),
+             ContainsSubstring("mpm_energy_of_particles, phase ") && ContainsSubstring("shared memory, byte 0"));
   // All lanes write to one place what stands there: no result shows that.
   const auto planted_after = [&](const std::string& line) {
     return found_in({line, line + " a.particles.field[0][0] += 0;"}, 0);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "backends/device/kernels/folds.hpp"
+#include "backends/device/kernels/gather.hpp"
 #include "backends/device/kernels/scatter.hpp"
 #include "backends/device/kernels/sorting.hpp"
 #include "backends/device/kernels/stopping.hpp"
@@ -246,7 +247,72 @@ void check_stencils() {
   }
 }
 
+/// A scene whose particles have positions alone.
+template <int D>
+struct MovedScene {
+  using Scalar = double;
+  static constexpr int dimension = D;
+  static constexpr bool sampled = false, axisymmetric = false;
+  struct Particle {
+    static constexpr int position = 0, strained_domain = -1;
+  };
+};
+
+/// Moves a particle, by a step of half a second, to a distance beyond one end of one axis, and asks whether it is still inside.
+template <int D>
+bool stays(int axis, int side, double beyond, int wall, double& arrived, int other_wall = wall_slip) {
+  device::Arguments<double> a{};
+  a.cell_size = 0.5, a.dt = 0.5, a.particles.stride = a.particles.count = 1;
+  double position[3] = {1.6, 2.7, 3.8};
+  Vec<D, double> velocity;
+  for (int c = 0; c < D; ++c) {
+    a.cells[c] = 3 + c, a.lower[c] = 1 + c, velocity[c] = 0.2 * c;
+    for (int& kind : a.walls[c]) kind = wall_slip;
+  }
+  a.walls[axis][side] = wall, a.walls[axis][1 - side] = wall == wall_periodic ? wall : other_wall;
+  const double end = side == 0 ? a.lower[axis] - beyond : a.lower[axis] + 0.5 * a.cells[axis] + beyond;
+  velocity[axis] = (end - position[axis]) / a.dt;
+  a.particles.field[0] = position;
+  const bool inside = device::move_particle<MovedScene<D>>(a, 0, velocity);
+  arrived = position[axis];
+  return inside;
+}
+
+/// A particle stays in the domain up to its walls, which rounding may overstep by a billionth of its size, and up to half a
+/// cell beyond separating ones; at a periodic end it comes in again at the other.
+template <int D>
+void check_ways_out() {
+  double arrived = 0;
+  for (int axis = 0; axis < D; ++axis)
+    for (const int side : {0, 1}) {
+      INFO(D << "-D, axis " << axis << ", side " << side);
+      const double size = 0.5 * (3 + axis), rounding = 1e-9 * size;
+      CHECK(stays<D>(axis, side, -0.25 * size, wall_slip, arrived));
+      CHECK(stays<D>(axis, side, 0.9 * rounding, wall_slip, arrived));
+      CHECK_FALSE(stays<D>(axis, side, 1.1 * rounding, wall_slip, arrived));
+      CHECK(stays<D>(axis, side, 0.9 * rounding, wall_stick, arrived));
+      CHECK_FALSE(stays<D>(axis, side, 0.1, wall_stick, arrived));
+      CHECK(stays<D>(axis, side, 0.24, wall_separate, arrived));
+      CHECK_FALSE(stays<D>(axis, side, 0.26, wall_separate, arrived));
+      // The margin of one wall is not that of the other.
+      CHECK_FALSE(stays<D>(axis, side, 0.1, wall_prescribed, arrived, wall_separate));
+      CHECK(stays<D>(axis, side, 0.1, wall_separate, arrived, wall_prescribed));
+      for (const double beyond : {0.1, 0.7 * size, 2.3 * size}) {
+        CHECK(stays<D>(axis, side, beyond, wall_periodic, arrived));
+        const double over = beyond / size - std::floor(beyond / size), lower = 1 + axis;
+        CHECK(std::abs(arrived - (lower + (side == 0 ? 1 - over : over) * size)) < 1e-14);
+      }
+      CHECK_FALSE(stays<D>(axis, side, std::nan(""), wall_separate, arrived));
+    }
+}
+
 }  // namespace
+
+TEST_CASE("a particle is inside up to its walls and half a cell beyond separating ones, and comes round periodic faces",
+          "[device]") {
+  check_ways_out<2>();
+  check_ways_out<3>();
+}
 
 TEST_CASE("a stencil has all its nodes, and says when one of them is beyond the grid", "[device]") {
   check_stencils<2>();

@@ -175,7 +175,7 @@ template <class Scene, class T = typename Scene::Scalar>
 MPM_HD void note_work_beyond_wall(const Arguments<T>& a, const Fold& fold) {
   using N = typename Scene::Node;
   if constexpr (N::work_beyond_walls >= 0) {
-    if (!a.records || fold.wall == wall_periodic) return;
+    if (!a.records) return;
     for (int c = 0; c < Scene::dimension; ++c) {
       const int at = c * a.node_count + fold.ghost;
       T force = load_at<N::force>(a, at);
