@@ -38,6 +38,10 @@ void check(const Mix& mix) {
     CHECK(difference(contact_counts(reference.simulation.backend(), reference.experiment),
                      contact_counts(found.simulation.backend(), found.experiment), 1.0) <= bound);
   if (content > 0) CHECK(difference(heat_ledger_values(reference), heat_ledger_values(found), content) <= bound);
+  for (std::size_t body = 0; body < reference.experiment.bodies.size(); ++body) {
+    const int index = static_cast<int>(body);
+    CHECK(reference.body(index).initial_position == found.body(index).initial_position);
+  }
   const std::vector<double> reactions = reaction_values(reference.simulation);
   REQUIRE(reactions.empty() != (mix.more.find("reactions") != mix.more.npos));
   if (!reactions.empty())

@@ -8,6 +8,7 @@
 
 #include "backends/device/device.hpp"
 #include "backends/device/memory.hpp"
+#include "backends/device/results.hpp"
 #include "backends/device/sorting.hpp"
 #include "device/device_support.hpp"
 #include "simulation/boundary.hpp"
@@ -93,6 +94,19 @@ TEST_CASE("copies of the host driver wait for a synchronisation and then come in
   CHECK(array.download() == std::vector<int>{0, 2, 3});
   CHECK(setup.driver->cuStreamDestroy_v2(stream) == device::driver_success);
   CHECK_THROWS_WITH(device.read(found.data(), pointer + 4, 12), ContainsSubstring("CUDA_ERROR_INVALID_VALUE"));
+}
+
+TEST_CASE("sums of a step have places one behind another, up to the end of the room for them", "[device][driver]") {
+  const device::DeviceSetup setup = device_setup();
+  device::Device device(*setup.driver, 0);
+  device::Results results(device);
+  CHECK(results.place(device::Results::room - 3) == 0);
+  CHECK(results.place(1) == device::Results::room - 3);
+  CHECK(results.has_room_for(2));
+  CHECK_FALSE(results.has_room_for(3));
+  CHECK(results.look() == device::nothing_stopped);
+  CHECK(results.has_room_for(device::Results::room));
+  CHECK_FALSE(results.has_room_for(device::Results::room + 1));
 }
 
 TEST_CASE("a launch that is handed an address of the host fails, and the device is lost", "[device][driver]") {

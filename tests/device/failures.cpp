@@ -4,6 +4,7 @@
 
 #include "device/device_support.hpp"
 #include "simulation/imposed_value.hpp"
+#include "simulation/offers_totals.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -45,9 +46,13 @@ Failure common_failure(const std::string& text, const std::vector<std::string>& 
     CHECK(found->failure.axis == expected->failure.axis);
     const double value = found->failure.value, wanted = expected->failure.value;
     CHECK(std::isfinite(value) == std::isfinite(wanted));
+    CHECK(std::isnan(value) == std::isnan(wanted));
     if (std::isfinite(wanted)) CHECK(value == Approx(wanted).epsilon(1e-6));
     CHECK(found->step == expected->step);
   }
+  // What stopped the run keeps nobody from measuring what it has left.
+  const auto& totals = dynamic_cast<const OffersTotals&>(device.simulation.backend());
+  CHECK(totals.totals_of(0)->mass == Approx(device.metrics.initial().mass / device.experiment.bodies.size()));
   return expected->failure;
 }
 
@@ -81,6 +86,40 @@ TEST_CASE("every backend names the axis and the place at which a particle leaves
   CHECK(above.cause == Cause::left_domain);
   CHECK(above.axis == 1);
   CHECK(above.value > 4);
+}
+
+TEST_CASE("every backend measures the way out from the domain's corner and from half a cell beyond separating walls",
+          "[device][failure]") {
+  const auto axis_of = [](const std::string& velocity, const std::vector<std::string>& overrides) {
+    const Failure failure = common_failure(thrown("bspline_quadratic", "pic", velocity), overrides);
+    CHECK(failure.cause == Cause::left_domain);
+    return failure.axis;
+  };
+  CHECK(axis_of(R"J(["0", "-30"])J", {"/grid/domain=[[50, 7], [54, 67]]", "/bodies/0/geometry/lower=[51, 8]",
+                                      "/bodies/0/geometry/upper=[53, 10]"}) == 1);
+  // 0.3 cells beyond a separating wall are no way out, below a free one are.
+  const std::string right = "/bodies/0/geometry/lower=[57, 1]", end = "/bodies/0/geometry/upper=[59, 3]";
+  CHECK(axis_of(R"J(["-160", "-200"])J", {R"(/grid/boundaries/x_min="separate")"}) == 1);
+  CHECK(axis_of(R"J(["160", "-200"])J", {R"(/grid/boundaries/x_max="separate")", right, end}) == 1);
+  CHECK(axis_of(R"J(["-160", "-200"])J", {R"(/grid/boundaries/x_max="separate")"}) == 0);
+  // The half is one of a cell, whatever its size: 0.3 m are a way out here, though a wall beside is nearer.
+  CHECK(axis_of(R"J(["-150", "0"])J", {R"(/grid/boundaries/x_min="separate")", "/grid/cell_size=0.5",
+                                       "/bodies/0/geometry/lower=[1, 0]", "/bodies/0/geometry/upper=[3, 1]"}) == 0);
+}
+
+TEST_CASE("every backend names the second body where its particle is the first that cannot go on",
+          "[device][failure]") {
+  const std::string both = R"J(/bodies=[{"name": "a", "material": "m", "velocity": ["0.1", "0"],
+      "geometry": {"type": "box", "lower": [20, 1], "upper": [22, 3]}},
+    {"name": "b", "material": "m", "geometry": {"type": "box", "lower": [1, 1], "upper": [3, 3]}, "velocity": )J";
+  for (const auto& [transfer, velocity, cause] : {std::tuple{"pic", R"J(["-30", "0"])J", Cause::left_domain},
+                                                  {"flip", R"J(["-30", "0"])J", Cause::left_domain},
+                                                  {"apic", R"J(["-150*(x-2)", "0"])J", Cause::inverted}}) {
+    INFO(transfer << " " << velocity);
+    const Failure failure = common_failure(thrown("bspline_quadratic", transfer, "[0, 0]"), {both + velocity + "}]"});
+    CHECK(failure.cause == cause);
+    CHECK(failure.body == 1);
+  }
 }
 
 TEST_CASE("every backend names what is not a number", "[device][failure]") {
@@ -141,6 +180,32 @@ TEST_CASE("every backend names the grip whose velocity is no number, and where i
     CHECK(words_of(device) == expected);
     DeviceScene in_float(text, "float", {}, {grips});
     CHECK(words_of(in_float).substr(0, 2) == expected.substr(0, 2));
+  }
+}
+
+TEST_CASE("a device in float names the grip that is told more than its range holds, with axis and place",
+          "[device][failure]") {
+  for (const int dimension : {2, 3}) {
+    Mix mix;
+    mix.dimension = dimension;
+    const std::string last =
+        dimension == 2 ? R"J(["1", "if(t > 0.03, 1e39, 1)"])J" : R"J([null, "1", "if(t > 0.03, 1e39, 1)"])J";
+    mix.more = R"(, "grips": [{"body": "a", "velocity": )" + last + R"(, "where": {"type": "half_space", "point": )" +
+               (dimension == 2 ? "[0.25, 0], \"normal\": [1, 0]}}]" : "[0.25, 0, 0], \"normal\": [1, 0, 0]}}]");
+    DeviceScene scene(mix.text(), "float");
+    std::string words;
+    try {
+      scene.run();
+    } catch (const ImposedValueFailure& stopped) {
+      words = stopped.what();
+      CHECK(stopped.imposed.name == (dimension == 2 ? "velocity along y" : "velocity along z"));
+      CHECK(std::isinf(stopped.imposed.value));
+    }
+    INFO(words);
+    CHECK_THAT(words, ContainsSubstring("/grips/0/velocity/" + std::to_string(dimension - 1) +
+                                        ": is not a finite number at t = 0.036 s, ("));
+    CHECK(std::count(words.begin() + static_cast<long>(words.find('(')), words.end(), ',') == dimension - 1);
+    CHECK(words.ends_with(") m"));
   }
 }
 

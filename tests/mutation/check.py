@@ -13,6 +13,7 @@ import page
 from build import Build
 from group import COMPILING, KINDS, Case, Group, in_overlay
 from mutants import mutants_of, tokens_of
+from programs import change_of, changed_composition, section_of
 from results import Equivalents, Result, Results
 from together import Together
 
@@ -200,6 +201,38 @@ class WritesThePage(unittest.TestCase):
         self.assertTrue(rows)
         for folder, mutants, *parts, _ in rows:
             self.assertEqual(int(mutants), sum(map(int, parts)), folder)
+
+
+class ChangesPrograms(unittest.TestCase):
+    TEXT = "#pragma once\n#include \"kernel/a.hpp\"\n\ninline constexpr int places = 3 * 2;\nint f() {\n  return 1 +\n         places;\n}\n"
+    FILE = "modules/kernel/b.hpp"
+    COMPOSED = ('#line 1 "kernel/a.hpp"\ninline constexpr int places = 3 * 2;\n\n#line 1 "kernel/b.hpp"\n\n\n\n'
+                "inline constexpr int places = 3 * 2;\nint f() {\n  return 1 +\n         places;\n}\n#line 1 \"c\"\n")  # fmt: skip
+
+    def changed(self, what, composed=COMPOSED):
+        mutant = next(m for m in mutants_of(self.FILE, self.TEXT) if m.what == what)
+        return changed_composition(composed, change_of(mutant, self.TEXT))
+
+    def test_a_line_of_its_own_file_alone(self):
+        old, new = "int places = 3 * 2;\nint f", "int places = 6 * 2;\nint f"
+        self.assertEqual(self.changed("3 to 6"), self.COMPOSED.replace(old, new))
+
+    def test_a_change_of_two_lines(self):
+        changed = self.changed("drop + places")
+        self.assertNotIn("places;\n}", changed)
+        self.assertEqual(changed.split("int f()")[0], self.COMPOSED.split("int f()")[0])
+        self.assertTrue(changed.endswith('}\n#line 1 "c"\n'))
+
+    def test_a_composition_without_the_file_or_the_line(self):
+        self.assertIsNone(self.changed("3 to 6", self.COMPOSED.replace("b.hpp", "d.hpp")))
+        self.assertIsNone(self.changed("3 to 6", self.COMPOSED.replace("3 * 2;\nint f", "3;\nint f")))
+
+    def test_what_the_composer_calls_a_file(self):
+        self.assertEqual(section_of("modules/materials/snow/snow.hpp"), "material plugin snow")
+        self.assertEqual(section_of("modules/operators/heat.hpp"), "operators/heat.hpp")
+        composer = (ROOT / "modules/backends/device/compose.cpp").read_text()
+        self.assertIn('" plugin "', composer)
+        self.assertIn('"#line 1 \\""', composer)
 
 
 class WritesThemTogether(unittest.TestCase):
