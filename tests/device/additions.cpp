@@ -30,6 +30,7 @@ void check(const Mix& mix) {
   found.run();
   const double epsilon = epsilon_of("double"), bound = device_bound(mix) * epsilon;
   REQUIRE(found.simulation.steps() == reference.simulation.steps());
+  CHECK(found.simulation.last_time_step() == Approx(reference.simulation.last_time_step()).epsilon(1e-9));
   CHECK(scene_difference(reference, found) <= bound);
   CHECK(book_difference(reference, found) <= bound);
   // A pair whose approach is zero to rounding, as in a filter's passes and beside held nodes, touches or not by its rounding.

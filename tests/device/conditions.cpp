@@ -66,6 +66,10 @@ TEST_CASE("walls that move on the host-run device", "[device]") {
   Mix mix = close_mix(3);
   mix.boundaries = moving_wall(3);
   check_on_device(mix);
+  // By its place, which is not that of the wall across from it.
+  mix = close_mix(2);
+  mix.boundaries = R"({"all": "slip", "x_max": {"type": "prescribed", "velocity": ["0.3*x-0.5-t", "0.1*x"]}})";
+  check_on_device(mix);
   // A filter's first increment is a velocity, which a moving wall mirrors about its own; the others are differences.
   for (const std::string constraints : {"every_increment", "kept_impulses", "at_end"})
     for (const std::string filter : {"fmpm", "xpic"}) {
@@ -89,6 +93,13 @@ TEST_CASE("boxes of conditions on the host-run device", "[device]") {
       mix.more = ", \"node_conditions\": [" + box(dimension, condition == "prescribed" ? prescribed : condition) + "]";
       check_on_device(mix);
     }
+  // One that reaches beyond the last cells holds the nodes there as well.
+  Mix beyond;
+  beyond.boundaries = R"({"all": "free"})";
+  beyond.overrides = {set("/grid/domain", "[[0, -0.1], [1.3, 0.6]]"), set("/bodies/0/geometry/centre", "[0.31, 0.38]")};
+  beyond.more =
+      R"(, "node_conditions": [{"type": "prescribed", "velocity": [0.2, 0.1], "lower": [0.5, 0.55], "upper": [2, 2]}])";
+  check_on_device(beyond);
   // Where two boxes and a wall hold the same node, the last one counts.
   for (const std::string& order : orders) {
     Mix mix = close_mix(2);
@@ -148,6 +159,10 @@ TEST_CASE("loads on the host-run device", "[device][loads]") {
 
 TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]") {
   check_ledgers(false);
+  // Steps that are booked alternate with others that visit each particle once.
+  Mix seldom = close_mix(2);
+  seldom.transfer = flip, seldom.more = R"(, "output": {"ledger_every": 3})";
+  check_on_device(seldom);
   // The entries must all be there, so that none is compared with zero.
   Mix mix = close_mix(2);
   mix.material = von_mises, mix.contact = coulomb;
@@ -247,6 +262,53 @@ TEST_CASE("a restored run on the host-run device goes on bit for bit", "[device]
       steps(whole, 5), steps(resumed, 5);
       CHECK(different(all_results(whole.simulation), all_results(resumed.simulation)) == 0);
     }
+}
+
+TEST_CASE("a run that is set back to its start on the host-run device goes the same way again", "[device]") {
+  Mix mix;
+  mix.transfer = flip;
+  DeviceScene scene(mix.text(), "double");
+  const auto results_of_steps = [&] {
+    for (int k = 0; k < 4; ++k) scene.simulation.step();
+    return all_results(scene.simulation);
+  };
+  ArchiveWriter archive;
+  scene.simulation.save(archive);
+  const std::vector<double> first = results_of_steps();
+  ArchiveReader reader(archive.bytes());
+  scene.simulation.restore(reader);
+  CHECK(different(first, results_of_steps()) == 0);
+}
+
+TEST_CASE("the second moment of each particle is told on the host-run device, whatever the lanes of a team",
+          "[device]") {
+  Mix mix;
+  mix.shape = R"({"type": "gimp_contiguous"})";
+  const DeviceScene usual(mix.text(), "double");
+  const BodyState expected = usual.body(0);
+  REQUIRE(!expected.second_moment.empty());
+  const int count = static_cast<int>(usual.simulation.particle_count(0));
+  for (const int lanes : {count - 1, count, 7, (count - 1) / 2}) {
+    if (lanes < 1 || lanes > 256) continue;
+    INFO(count << " particles, " << lanes << " lanes");
+    const DeviceScene other(mix.text(), "double", {lanes, TeamShape::upwards});
+    CHECK(other.body(0).second_moment == expected.second_moment);
+  }
+}
+
+TEST_CASE("particles that have come beyond a separating wall move as the reference backend's on the host-run device",
+          "[device]") {
+  Mix mix;
+  mix.boundaries = R"({"all": "separate"})", mix.transfer = R"({"type": "pic"})";
+  mix.overrides = {set("/bodies/0/geometry", R"({"type": "box", "lower": [0.11, 0.3], "upper": [0.16, 0.35]})"),
+                   set("/bodies/0/velocity", "[-16, 0]"), set("/solver/end_time", "0.027")};
+  DeviceScene scene(mix.text(), "double", {}, mix.overrides);
+  scene.run();
+  const BodyState state = scene.body(0);
+  double least = 1;
+  for (std::size_t p = 0; p < state.position.size(); p += 2) least = std::min(least, state.position[p]);
+  REQUIRE(least < -0.01);
+  check_on_device(mix);
 }
 
 TEST_CASE("particles keep what is added to the plan's list on the host-run device", "[device]") {
