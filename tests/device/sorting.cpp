@@ -192,3 +192,21 @@ TEST_CASE("the number of teams that share the blocks of particles changes roundi
       CHECK(state_difference(experiment, usual.body(body), simulation.backend().body_state(body)) <= 1e2 * 0x1p-52);
   }
 }
+
+TEST_CASE("the blocks of a grid have room in as many chunks as they fill, and lists as long as particles can fill",
+          "[device][sorting]") {
+  for (const auto& [table, chunks] : {std::pair{1, 1}, {1023, 1}, {1024, 1}, {1025, 2}, {2048, 2}, {2049, 3}})
+    CHECK(device::BlockRoom(table, 10).chunks == chunks);
+  CHECK(device::BlockRoom(2000, 10).most == 10);
+  CHECK(device::BlockRoom(5, 10).most == 5);
+  const device::DeviceSetup setup = device_setup();
+  device::Device device(*setup.driver, 0);
+  device::Arguments<double> scene{};
+  for (int c = 0; c < 3; ++c) scene.cells[c] = 40, scene.padding[c] = 1;
+  const device::Blocks blocks(device, "b", scene, 3, 10);
+  REQUIRE(blocks.chunks() == 2);
+  // Two numbers a chunk of either kind, and neither reaches into the other's room or beyond it.
+  const std::size_t of_kind = device::BlockRoom(blocks.table().table, 10).of_chunks / 2;
+  CHECK(of_kind == 4);
+  CHECK(static_cast<std::size_t>(blocks.table().before_chunk - blocks.table().chunk) == of_kind);
+}

@@ -30,8 +30,7 @@ std::vector<KernelResources> resources_in(std::string_view log);
 /// capability).
 struct Multiprocessor {
   std::string architecture;  ///< "sm_90"
-  int warps = 64, blocks = 32, registers = 65536;
-  int shared_bytes = 0;
+  int warps = 0, blocks = 0, registers = 0, shared_bytes = 0;
 };
 /// The architectures that figures are given for.
 const std::vector<Multiprocessor>& multiprocessors();
