@@ -93,6 +93,11 @@ TEST_CASE("boxes of conditions on the host-run device", "[device]") {
       mix.more = ", \"node_conditions\": [" + box(dimension, condition == "prescribed" ? prescribed : condition) + "]";
       check_on_device(mix);
     }
+  // Nodes are in a box that begins less than a billionth of a cell behind them, and in none that begins farther.
+  Mix close_by;
+  close_by.more = R"(, "node_conditions": [{"type": "stick", "lower": [0.300000000075, 0.2], "upper": [0.4, 0.4]},
+    {"type": "prescribed", "velocity": [0.2, 0.1], "lower": [0.5, 0.3000000005], "upper": [0.7, 0.5]}])";
+  check_on_device(close_by);
   // One that reaches beyond the last cells holds the nodes there as well.
   Mix beyond;
   beyond.boundaries = R"({"all": "free"})";

@@ -98,12 +98,12 @@ TEST_CASE("every backend measures the way out from the domain's corner and from 
   CHECK(axis_of(R"J(["0", "-30"])J", {"/grid/domain=[[50, 7], [54, 67]]", "/bodies/0/geometry/lower=[51, 8]",
                                       "/bodies/0/geometry/upper=[53, 10]"}) == 1);
   // 0.3 cells beyond a separating wall are no way out, below a free one are.
-  const std::string right = "/bodies/0/geometry/lower=[57, 1]", end = "/bodies/0/geometry/upper=[59, 3]";
+  const std::string right = "/bodies/0/geometry/lower=[58.5, 1]", end = "/bodies/0/geometry/upper=[59, 3]";
   CHECK(axis_of(R"J(["-160", "-200"])J", {R"(/grid/boundaries/x_min="separate")"}) == 1);
   CHECK(axis_of(R"J(["160", "-200"])J", {R"(/grid/boundaries/x_max="separate")", right, end}) == 1);
   CHECK(axis_of(R"J(["-160", "-200"])J", {R"(/grid/boundaries/x_max="separate")"}) == 0);
   // The half is one of a cell, whatever its size: 0.3 m are a way out here, though a wall beside is nearer.
-  CHECK(axis_of(R"J(["-150", "0"])J", {R"(/grid/boundaries/x_min="separate")", "/grid/cell_size=0.5",
+  CHECK(axis_of(R"J(["-145", "0"])J", {R"(/grid/boundaries/x_min="separate")", "/grid/cell_size=0.5",
                                        "/bodies/0/geometry/lower=[1, 0]", "/bodies/0/geometry/upper=[3, 1]"}) == 0);
 }
 

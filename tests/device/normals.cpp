@@ -65,6 +65,13 @@ TEST_CASE("every detection on the host-run device", "[device][normals]") {
   }
 }
 
+TEST_CASE("each body has its own edges of particles on the host-run device", "[device][normals]") {
+  Mix mix;
+  mix.contact = R"({"type": "coulomb", "friction": 0.2})",
+  mix.overrides = {set("/bodies/1/particles_per_cell_axis", "3")};
+  check_on_device(mix);
+}
+
 TEST_CASE("bodies meet at more nodes than a batch holds on the host-run device", "[device][normals]") {
   Mix mix;
   mix.contact = R"({"type": "coulomb", "friction": 0.2, "normal": "widest_gap", "detection": "particle_surfaces"})";

@@ -11,10 +11,10 @@ namespace {
 void check(const Mix& mix) {
   if (!is_chosen_check()) return;
   INFO(mix.name());
-  Scene reference(mix.text(), {"/backend=reference"});
+  Scene reference(mix.text(), on_reference(mix));
   reference.run();
   for (const std::string precision : {"double", "float"}) {
-    DeviceScene device(mix.text(), precision);
+    DeviceScene device(mix.text(), precision, {}, mix.overrides);
     device.run();
     CHECK(scene_difference(reference, device) <= device_bound(mix) * epsilon_of(precision));
     CHECK(difference(contact_counts(reference.simulation.backend(), reference.experiment),
@@ -44,6 +44,20 @@ TEST_CASE("rigid bodies on the host-run device", "[device]") {
     mix.filter = filter;
     check(mix);
   }
+}
+
+// Half-spaces across the axis of symmetry, whose nodes stand for rings; and a liquid, which drags once a step.
+TEST_CASE("rigid bodies around an axis, and ones that a liquid drags, on the host-run device", "[device]") {
+  for (const std::string law : {R"({"type": "coulomb", "friction": 0.3})",
+                                R"({"type": "liquid_contact", "viscosity": 400, "slip_length": 0.02})"})
+    for (const bool rings : {false, true}) {
+      Mix mix = beside_rigid_bodies(2);
+      mix.more =
+          R"(, "rigid_bodies": [{"name": "floor", "contact": )" + law +
+          R"(, "velocity": [0, "0.5+t"], "geometry": {"type": "half_space", "point": [0, 0.25], "normal": [0, 1]}}])";
+      if (rings) mix.overrides = {set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]")};
+      check(mix);
+    }
 }
 
 // A graph holds the launches of a step with all their numbers: a body that begins to move late has to leave it.

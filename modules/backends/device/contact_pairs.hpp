@@ -121,9 +121,11 @@ class ContactPairs {
           {coordinates(node), found[a].at(node, experiment_.dimension), found[b].at(node, experiment_.dimension), {}});
       at.push_back(node);
     }
-    for (std::size_t first = 0; first < met.size(); first += MPM_BATCH)
-      geometry_.find(points_, a, b,
-                     std::span(met).subspan(first, std::min<std::size_t>(MPM_BATCH, met.size() - first)));
+    for (std::span<MetPair> left(met); !left.empty();) {
+      const std::size_t count = std::min<std::size_t>(MPM_BATCH, left.size());
+      geometry_.find(points_, a, b, left.first(count));
+      left = left.subspan(count);
+    }
     for (std::size_t i = 0; i < met.size(); ++i) {
       const ContactGeometry& geometry = met[i].geometry;
       const std::size_t node = at[i];
