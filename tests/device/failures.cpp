@@ -52,6 +52,7 @@ Failure common_failure(const std::string& text, const std::vector<std::string>& 
   }
   // What stopped the run keeps nobody from measuring what it has left.
   const auto& totals = dynamic_cast<const OffersTotals&>(device.simulation.backend());
+  REQUIRE(totals.totals_of(0));
   CHECK(totals.totals_of(0)->mass == Approx(device.metrics.initial().mass / device.experiment.bodies.size()));
   return expected->failure;
 }

@@ -299,6 +299,13 @@ TEST_CASE("the heat ledger of the host-run device explains what particles hold",
   CHECK(std::abs(scene.simulation.backend().heat_ledger().sum() - gained) < 1e3 * 0x1p-52 * before);
 }
 
+TEST_CASE("work that warms a body is no entry of a ledger that is not asked for on the host-run device", "[device]") {
+  Mix mix = warm_and_close(2);
+  mix.transfer = transfer_named("flip"), mix.material = material(plastic, R"(, "dissipation_to_heat": 0.9)");
+  mix.overrides.emplace_back(R"(/output={"ledger": false})");
+  check_on_device(mix);
+}
+
 TEST_CASE("a restored run with temperature on the host-run device goes on bit for bit", "[device]") {
   const auto results = [](const Simulation& simulation) {
     std::vector<double> all = all_results(simulation);

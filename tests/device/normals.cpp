@@ -75,10 +75,10 @@ TEST_CASE("each body has its own edges of particles on the host-run device", "[d
 TEST_CASE("bodies meet at more nodes than a batch holds on the host-run device", "[device][normals]") {
   Mix mix;
   mix.contact = R"({"type": "coulomb", "friction": 0.2, "normal": "widest_gap", "detection": "particle_surfaces"})";
-  mix.overrides = {set("/grid/cell_size", "0.0125"), set("/solver/time_step", "0.0009"),
-                   set("/solver/end_time", "0.0036"),
-                   set("/bodies/0/geometry", R"({"type": "box", "lower": [0.2, 0], "upper": [0.5175, 0.85]})"),
-                   set("/bodies/1/geometry", R"({"type": "box", "lower": [0.52, 0], "upper": [0.81, 0.85]})")};
+  mix.overrides = {set("/grid/domain", "[[0, -0.1], [1.3, 7.5]]"),
+                   set("/bodies/0/geometry", R"({"type": "box", "lower": [0.2, 0], "upper": [0.5175, 7.2]})"),
+                   set("/bodies/1/geometry", R"({"type": "box", "lower": [0.52, 0], "upper": [0.81, 7.2]})"),
+                   set("/bodies/0/velocity", "[1.4, 0]"), set("/solver/end_time", "0.027")};
   Scene reference(mix.text(), on_reference(mix));
   reference.simulation.step();
   const ContactRecord record = reference.simulation.backend().contact_record();

@@ -3,8 +3,11 @@
 
 import sys
 import tempfile
+import threading
 import unittest
+from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -13,7 +16,7 @@ import page
 from build import Build
 from group import COMPILING, KINDS, Case, Group, in_overlay
 from mutants import mutants_of, tokens_of
-from programs import change_of, changed_composition, section_of
+from programs import InPrograms, change_of, changed_composition, section_of
 from results import Equivalents, Result, Results
 from together import Together
 
@@ -227,12 +230,35 @@ class ChangesPrograms(unittest.TestCase):
         self.assertIsNone(self.changed("3 to 6", self.COMPOSED.replace("b.hpp", "d.hpp")))
         self.assertIsNone(self.changed("3 to 6", self.COMPOSED.replace("3 * 2;\nint f", "3;\nint f")))
 
+    def result_of(self, *runs, patience=100):
+        """What becomes of a mutant in cases that each end so: exit code and what the compiler noted."""
+        alone = InPrograms.__new__(InPrograms)
+        alone.patience, alone.first, alone.lock, ended = patience, (), threading.Lock(), iter(runs)
+        alone.cases = [Case("device", "file", str(number), "") for number, _ in enumerate(runs)]
+        for case in alone.cases:
+            case.learn({"seconds": 1, "usable": True, "broken_off": False, "comes_to": [section_of(self.FILE)]})
+        alone.run = lambda *_: (lambda code, notes: (code, Counter(notes), 60, set()))(*next(ended))
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / self.FILE
+            path.parent.mkdir(parents=True)
+            path.write_text(self.TEXT)
+            alone.build = SimpleNamespace(tree=Path(folder))
+            result = alone.result(mutants_of(self.FILE, self.TEXT)[0])
+        return result and result.status
+
+    def test_what_became_of_one_that_is_tried_alone(self):
+        same, changed = ["same"], ["changed"]
+        self.assertEqual(self.result_of((0, same), (1, changed)), Result.KILLED)
+        self.assertEqual(self.result_of((0, changed), (None, changed)), Result.TIMED_OUT)
+        self.assertEqual(self.result_of((0, same), (0, changed)), Result.SURVIVED)
+        self.assertEqual(self.result_of((0, same), (0, same)), Result.SAME_CODE)
+        self.assertEqual(self.result_of((0, same), (1, ["refused"])), Result.UNCOMPILED)
+        self.assertEqual(self.result_of((1, same), (0, same)), Result.SAME_CODE)  # it fails for another reason
+        self.assertIsNone(self.result_of((0, same), (0, same), (0, same), patience=100))  # one is left that might be changed
+
     def test_what_the_composer_calls_a_file(self):
         self.assertEqual(section_of("modules/materials/snow/snow.hpp"), "material plugin snow")
         self.assertEqual(section_of("modules/operators/heat.hpp"), "operators/heat.hpp")
-        composer = (ROOT / "modules/backends/device/compose.cpp").read_text()
-        self.assertIn('" plugin "', composer)
-        self.assertIn('"#line 1 \\""', composer)
 
 
 class WritesThemTogether(unittest.TestCase):

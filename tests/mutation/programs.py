@@ -11,12 +11,13 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
+from build import BuildFailed
 from group import COMPILING, cases_of
 from results import Result
 from trial import Bench
 
 # In the place of the compiler of programs: it changes the text before, and notes whether that changed the instructions.
-COMPILER = """#!{python}
+COMPILER = """#!{python} -B
 import hashlib, os, subprocess, sys
 sys.path.insert(0, {folder!r})
 from programs import changed_composition, read_change
@@ -38,7 +39,8 @@ if notes and "-c" in words:
         status = subprocess.call([{compiler!r}, *words, "-w"])
         same = status == 0 and os.path.isfile(kept) and open(out, "rb").read() == open(kept, "rb").read()
         with open(notes, "a") as file:
-            file.write("refused\\n" if status else "same\\n" if same else "changed\\n")
+            refused = status > 0 and os.path.isfile(kept)  # else the compiler was ended, or refuses the unchanged text as well
+            file.write("refused\\n" if refused else "ended\\n" if status else "same\\n" if same else "changed\\n")
         sys.exit(status)
 os.execv({compiler!r}, [{compiler!r}, *words, "-w"])
 """
@@ -101,13 +103,24 @@ class InPrograms:
         kept = json.loads(known.read_text()) if known.is_file() else {}
         unknown = [case for case in self.cases if case.key not in kept]
         with ThreadPoolExecutor(jobs) as pool:
-            for case, learnt in zip(unknown, pool.map(lambda case: self.run(case, self.longest, None), unknown)):
-                code, _, seconds, sections = learnt
-                kept[case.key] = {"seconds": seconds, "usable": code == 0, "comes_to": sorted(sections)}
-                known.write_text(json.dumps(kept))
+            try:
+                for case, learnt in zip(unknown, pool.map(lambda case: self.run(case, self.longest, None), unknown)):
+                    code, _, seconds, sections = learnt
+                    if code == 0:
+                        kept[case.key] = {"seconds": seconds, "usable": True, "comes_to": sorted(sections)}
+                        known.write_text(json.dumps(kept))
+                    elif code is not None:
+                        self.say(f"mutation: {case.name} ({case.title}) fails on the unchanged program, and is left out")
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                Bench.stop_all()
+                raise
+        self.cases = [case for case in self.cases if case.key in kept]
         for case in self.cases:
             case.learn({"broken_off": False, **kept[case.key]})
         self.cases = [case for case in self.cases if case.usable and case.comes_to]
+        if not self.cases:
+            raise BuildFailed(f"no case of these suites compiles a program of the device in {self.longest} seconds")
         self.say(f"mutation: {len(self.cases)} cases and checks compile programs of the device and take at most {self.longest} seconds")
 
     def run(self, case, most, change):
@@ -142,7 +155,7 @@ class InPrograms:
                 raise
 
     def result(self, mutant):
-        """What became of a mutant; none where no program of the cases has its line."""
+        """What became of a mutant; none where no program that was compiled in time has its line, or is changed by it."""
         change = change_of(mutant, (self.build.tree / mutant.file).read_text())
         passed, seen, spent = Counter(), Counter(), 0.0
         left = [case for case in self.cases if change["section"] in case.comes_to]
@@ -163,6 +176,8 @@ class InPrograms:
             if killed:
                 return Result(Result.TIMED_OUT if code is None else Result.KILLED, case.name, case.title)
         if not seen:
+            return None
+        if not seen["changed"] and left:  # others might have been changed
             return None
         if not seen["changed"]:
             return Result(Result.SAME_CODE, check=f"in {seen['same']} programs of the device")

@@ -48,12 +48,6 @@ inline std::string transfer_named(const std::string& id) {
   return "{\"type\": \"" + id + "\"}";
 }
 
-/// Overrides that run a mix on the reference backend.
-inline std::vector<std::string> on_reference(const Mix& mix) {
-  std::vector<std::string> overrides = mix.overrides;
-  for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
-  return overrides;
-}
 /// Whether the program takes the mix.
 inline bool is_accepted(const Mix& mix) {
   try {

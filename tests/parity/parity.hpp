@@ -146,6 +146,13 @@ struct Mix {
   }
 };
 
+/// Overrides that run a mix on the reference backend.
+inline std::vector<std::string> on_reference(const Mix& mix) {
+  std::vector<std::string> overrides = mix.overrides;
+  for (const char* choice : {"/backend=reference", "/precision=double"}) overrides.emplace_back(choice);
+  return overrides;
+}
+
 /// Whether the program refuses the mix at load, by name; tests/config/combinations.cpp checks which ones it may.
 inline bool is_refused(const Mix& mix) {
   try {
