@@ -18,7 +18,7 @@ from trial import Bench
 
 # In the place of the compiler of programs: it changes the text before, and notes whether that changed the instructions.
 COMPILER = """#!{python} -B
-import hashlib, os, subprocess, sys
+import hashlib, os, shutil, subprocess, sys
 sys.path.insert(0, {folder!r})
 from programs import changed_composition, read_change
 
@@ -34,7 +34,7 @@ if notes and "-c" in words:
         if not os.path.isfile(kept):
             new = out + ".unchanged.o"
             if subprocess.call([{compiler!r}, *words, "-w", "-o", new]) == 0:
-                os.replace(new, kept)
+                shutil.move(new, kept)
         open(source, "w").write(changed)
         status = subprocess.call([{compiler!r}, *words, "-w"])
         same = status == 0 and os.path.isfile(kept) and open(out, "rb").read() == open(kept, "rb").read()
