@@ -109,9 +109,12 @@ bool Simulation::changes_at(double time, long steps) const {
 
 /// The next step's scatter needs its dt and its particles: it may neither precede an estimate or a change of the particles
 /// nor be done when there is no next step.
+bool Simulation::ends_with_step() const {
+  return ends_at(end_of_step()) || steps_ + 1 >= experiment_.solver.max_steps;
+}
+
 bool Simulation::may_scatter_ahead() const {
-  return !ends_at(end_of_step()) && !changes_at(end_of_step(), steps_ + 1) &&
-         steps_ + 1 < experiment_.solver.max_steps && (steps_ + 1) % estimate_every_ != 0;
+  return !ends_with_step() && !changes_at(end_of_step(), steps_ + 1) && (steps_ + 1) % estimate_every_ != 0;
 }
 
 void Simulation::execute(const Step& step, StepInfo& info) {
@@ -144,7 +147,7 @@ void Simulation::gather(const Step& step, StepInfo& info) {
   const bool ahead = may_scatter_ahead();
   info.next_time = end_of_step();
   info.next_dt = time_step_from(info.next_time);
-  observed_ = info.observed = !ahead || !wanted_ || wanted_(info.next_time, steps_ + 1);
+  observed_ = info.observed = !ahead || info.observed;  // the state is whole where no scatter has gone ahead
   execute(step.children[ahead ? 0 : 1], info);
   scattered_ = ahead && backend_->scattered();
 }
@@ -155,6 +158,7 @@ void Simulation::begin(StepInfo& info) {
   dt_ = info.dt = time_step_from(time_);
   if (imposes_by_time_) stop_at_impossible_value(experiment_, {time_, time_ + dt_});
   info.filtered = filter_due();
+  info.observed = ends_with_step() || !wanted_ || wanted_(end_of_step(), steps_ + 1);
   chosen_ = true;
 }
 

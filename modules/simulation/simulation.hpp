@@ -83,6 +83,7 @@ class Simulation {
   void gather(const Step& step, StepInfo& info);
   void begin(StepInfo& info);
   void take_limit();
+  bool ends_with_step() const;  ///< whether the step that is under way is the run's last one
   bool may_scatter_ahead() const;
   bool filter_due();
   bool changes_at(double time, long steps) const;

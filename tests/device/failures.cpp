@@ -210,6 +210,17 @@ TEST_CASE("a device in float names the grip that is told more than its range hol
   }
 }
 
+TEST_CASE("every backend names the axis along which a step goes beyond all numbers", "[device][failure]") {
+  // 2^1023 m/s for 4 s. All weights and sums are powers of two and their sums, so that no velocity has a gradient.
+  for (const int axis : {0, 1}) {
+    const std::string velocity = axis == 0 ? R"J(["2^1023", "1"])J" : R"J(["1", "2^1023"])J";
+    const Failure failure = common_failure(thrown("bspline_quadratic", "pic", velocity), {"/solver/time_step=4"});
+    CHECK(failure.cause == Cause::position_not_a_number);
+    CHECK(failure.axis == axis);
+    CHECK(std::isinf(failure.value));
+  }
+}
+
 TEST_CASE("every backend names a temperature that is not a number", "[device][failure]") {
   const std::string text = thrown("bspline_quadratic", "pic", R"J(["1", "1"])J");
   for (const std::string temperature : {"20+sqrt(9.6-x)", "20+10^(500*(x-9))"}) {  // the second one is infinite
@@ -220,6 +231,13 @@ TEST_CASE("every backend names a temperature that is not a number", "[device][fa
     CHECK(failure.particle > 0);
     CHECK(!std::isfinite(failure.value));
   }
+  // Heat that brings the largest numbers beyond all numbers.
+  const Failure infinite = common_failure(
+      text, {R"(/materials/m/thermal={"conductivity": 1e-3, "heat_capacity": 1e-9})", "/bodies/0/temperature=1.7e308",
+             R"(/node_conditions=[{"type": "thermal", "heating": 1e301, "lower": [0, 0], "upper": [4, 4]}])"});
+  CHECK(infinite.cause == Cause::temperature_not_a_number);
+  CHECK(infinite.axis == -1);
+  CHECK(std::isinf(infinite.value));
 }
 
 TEST_CASE("every backend names an inverted particle with its volume ratio", "[device][failure]") {
@@ -237,6 +255,35 @@ TEST_CASE("every backend names a particle that reaches the axis", "[device][fail
   CHECK(failure.cause == Cause::reached_axis);
   CHECK(failure.axis == 0);
   CHECK(failure.value <= 0);
+}
+
+TEST_CASE("every backend lets a particle with corners leave the domain", "[device][failure]") {
+  const Failure failure = common_failure(thrown("cpdi2", "pic", R"J(["1", "-30"])J"));
+  CHECK(failure.cause == Cause::left_domain);
+  CHECK(failure.axis == 1);
+}
+
+TEST_CASE("a state of the device that is read before a particle cannot go on changes nothing", "[device][failure]") {
+  const std::string text = thrown("gimp_contiguous", "tpic", R"J(["2*x", "0"])J");
+  DeviceScene scene(text, "double"), read(text, "double");
+  const std::optional<Stop> expected = stop_of(scene);
+  REQUIRE(expected);
+  std::vector<double> moments;
+  std::optional<Stop> found;
+  try {
+    for (;;) {
+      read.simulation.step();
+      moments = read.simulation.backend().body_state(0).second_moment;
+    }
+  } catch (const RunFailure& stopped) {
+    found = Stop{stopped.failure, cause_text(stopped.failure, read.experiment), read.simulation.steps()};
+  }
+  CHECK(found->text == expected->text);
+  CHECK(found->failure.particle == expected->failure.particle);
+  CHECK(found->step == expected->step);
+  // The domain that has outgrown its stencil has no second moment any more.
+  REQUIRE(moments.size() % 4 == 0);
+  CHECK(std::isnan(moments[4 * expected->failure.particle]));
 }
 
 TEST_CASE("every backend names a domain that is too long, inside out or too far", "[device][failure]") {

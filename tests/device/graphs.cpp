@@ -130,6 +130,34 @@ TEST_CASE("steps that ask the host for something are no graphs", "[device][graph
   }
 }
 
+TEST_CASE("nodes of contact are written down in the steps that are asked for them, beside graphs of the others",
+          "[device][graphs]") {
+  const Experiment experiment =
+      device_experiment(touching().text(), "double", {R"(/output={"frames": 2, "contact_nodes": true})"});
+  device::DeviceSetup with_graphs = device_setup(), without = device_setup();
+  without.graphs = false;
+  Simulation plain(experiment, device_factory(without)), found(experiment, device_factory(with_graphs));
+  for (Simulation* const simulation : {&plain, &found})
+    simulation->observe_when([](double, long step) { return step % 5 == 0; });
+  long graph_launches = -device::calls_on_host("cuGraphLaunch");
+  for (int k = 1; k <= 10; ++k) {
+    plain.step(), found.step();
+    if (k % 5 > 0) {
+      CHECK((plain.backend().contact_nodes().empty() && found.backend().contact_nodes().empty()));
+      continue;
+    }
+    const std::vector<ContactNode>&expected = plain.backend().contact_nodes(), &nodes = found.backend().contact_nodes();
+    REQUIRE(!expected.empty());
+    REQUIRE(nodes.size() == expected.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      CHECK(nodes[i].node == expected[i].node);
+      CHECK(nodes[i].force == expected[i].force);
+    }
+  }
+  graph_launches += device::calls_on_host("cuGraphLaunch");
+  CHECK(graph_launches >= 4);
+}
+
 TEST_CASE("steps beside walls that move evenly are graphs", "[device][graphs]") {
   const std::string even = set("/grid/boundaries/y_min", R"({"type": "prescribed", "velocity": ["0.1*x", 0.05]})");
   const Run plain = run(touching().text(), false, {even}), found = run(touching().text(), true, {even});

@@ -96,7 +96,6 @@ std::vector<double> DeviceBackend<T>::second_moments(const Body<T>& body) const 
   const int number = body.number("second_moment");
   body.arrays.fill(number, not_a_number);
   Arguments<T> a = arguments_of(body);
-  a.stop = ignored_stop_.data();
   device_->launch("second_moments", a, (body.count + lanes_ - 1) / lanes_, lanes_);
   const double h = experiment_.grid.cell_size;
   return body.arrays.index_major(number, h * h);

@@ -58,7 +58,7 @@ void DeviceBackend<T>::apply_forces(const StepInfo& step) {
   if (experiment_.damping.acts()) damp(step);
   if (accounted_) account_for_impulses();
   for_each_axis("fill_velocities", filled_axes());
-  if (notes_reactions_ && !merges_) later([this, dt = step.dt] { reactions_.apply_forces(dt); });
+  if (notes_reactions_) later([this, dt = step.dt] { reactions_.apply_forces(dt); });
   record_reactions(step);
   rigid_.bodies().end_step(step);
 }

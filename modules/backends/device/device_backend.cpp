@@ -79,7 +79,6 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       contact_parameters_(*device_, "the parameters of contact"),
       normal_parameters_(*device_, "the parameters of the contact normal"),
       detection_parameters_(*device_, "the parameters of contact detection"),
-      ignored_stop_(*device_, "the failed particle"),
       partial_sums_(*device_, "sums"),
       totals_(*device_, "sums", count_of_totals),
       deterministic_(sums_deterministically(experiment)),
@@ -111,7 +110,6 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   if (experiment.contact_normal) scene_.normal_parameters = give(normal_parameters_, *experiment.contact_normal);
   if (experiment.contact_detection)
     scene_.detection_parameters = give(detection_parameters_, *experiment.contact_detection);
-  ignored_stop_.upload(std::vector<Stopped>{nothing_stopped});
   scene_.stop = results_.stop();
   if (deterministic_) {
     const auto channels = static_cast<std::size_t>(most_channels(choice));

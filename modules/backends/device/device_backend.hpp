@@ -312,7 +312,6 @@ class DeviceBackend final : public Backend, public OffersTotals {
   int lanes_, teams_;               ///< of a team, and at work on blocks at once
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_,
       normal_parameters_, detection_parameters_;
-  DeviceArray<Stopped> ignored_stop_;
   DeviceArray<double> partial_sums_;
   static constexpr int count_of_totals = 24;
   DeviceArray<double> totals_;  ///< of one body (kernels/totals_list.hpp)

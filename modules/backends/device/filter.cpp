@@ -68,7 +68,6 @@ void DeviceBackend<T>::measure_constraints() {
 template <class T>
 void DeviceBackend<T>::constrain_velocity(const Pass& pass, const StepInfo& step) {
   conditions_.evaluate(time_of(pass, step), scene_);
-  scene_.grips_at_end = pass.stage != Stage::before_forces;
   if (plan_.node_field("velocity_of_constraints")) {
     for_each_field("take_free_velocity", vectors());
     if (notes_reactions_) later([this] { reactions_.take_back(); });

@@ -105,7 +105,6 @@ void DeviceBackend<T>::advance(const StepInfo& step) {
 
 template <class T>
 void DeviceBackend<T>::gather(const Pass& pass, const StepInfo& step) {
-  scene_.records = accounted_;
   if (plan_.advance != Advance::apart && !accounted_) return advance(step);
   prepared_ = false;
   if (accounted_ && step.filtered) {

@@ -7,7 +7,6 @@ template <class T>
 void DeviceBackend<T>::sum_particles(const std::string& phase, const Body<T>& body, int count, int maxima,
                                      int place) const {
   Arguments<T> a = arguments_of(body);
-  a.stop = ignored_stop_.data();
   a.sum_teams = (body.count + lanes_ - 1) / lanes_, a.sum_count = count, a.sum_maxima = maxima;
   a.sums = totals_.data() + place;
   device_->launch(phase, a, a.sum_teams, lanes_);

@@ -135,7 +135,7 @@ MPM_HD void second_moments(const Team& team, const Arguments<typename Scene::Sca
   for_each_index(team, a.particles.count, [&](int p) {
     if constexpr (P::second_moment >= 0) {
       const Stencil<Scene> stencil(a, p);
-      if (!stencil.inside()) return report(a, p);
+      if (!stencil.inside()) return;  // what the host has filled in stays, which is no number
       store_matrix(a.particles.field[P::second_moment], a.particles.stride, p, stencil.second_moment());
     }
   });
