@@ -110,6 +110,9 @@ TEST_CASE("particles that advance at once go where those of launches apart go", 
   Mix filtered = with({R"(/filter={"type": "fmpm", "order": 3, "every_steps": 2})"});
   filtered.transfer = R"({"type": "flip"})", filtered.shape = R"({"type": "cpdi"})";
   CHECK(difference_to_apart(filtered, "double") <= device_bound(filtered));
+  Mix by_mean = with({R"(/filter={"type": "fmpm", "order": 3, "every_steps": 2, "position_update": "mean_velocity"})"});
+  by_mean.transfer = R"({"type": "flip"})";
+  CHECK(difference_to_apart(by_mean, "double") <= device_bound(by_mean));
   Mix rings = with({set("/grid/symmetry", "axisymmetric"), set("/gravity", "[0, -1.3]"),
                     set("/materials/m/artificial_viscosity", "{}")});
   CHECK(difference_to_apart(rings, "double") <= device_bound(rings));

@@ -300,6 +300,25 @@ TEST_CASE("a run that is set back to its start on the host-run device goes the s
   }
 }
 
+TEST_CASE("automatic steps grow on the host-run device as particles slow down", "[device]") {
+  Mix mix;
+  mix.close = true;
+  mix.more = R"(, "damping": {"viscous": 40})";
+  mix.overrides = {set("/solver/time_step", "\"auto\""), set("/solver/end_time", "0.3"), set("/solver/courant", "0.05"),
+                   set("/materials/m/youngs_modulus", "0.5")};
+  Scene reference(mix.text(), on_reference(mix));
+  DeviceScene device(mix.text(), "double", {}, mix.overrides);
+  device.simulation.step();
+  const double first = device.simulation.backend().time_step_limit().speed;
+  reference.run(), device.run();
+  const TimeStepLimit expected = reference.simulation.backend().time_step_limit(),
+                      found = device.simulation.backend().time_step_limit();
+  CHECK(device.simulation.steps() == reference.simulation.steps());
+  CHECK(found.speed == Approx(expected.speed).epsilon(1e-9));
+  CHECK(found.particle == expected.particle);
+  CHECK(found.speed < 0.9 * first);
+}
+
 TEST_CASE("the second moment of each particle is told on the host-run device, whatever the lanes of a team",
           "[device]") {
   Mix mix;
