@@ -59,7 +59,7 @@ TEST_CASE("a number that was changed by hand is found with its place, difference
     std::string cell, changed;
     for (std::size_t k = 0; std::getline(values, cell, ','); ++k) {
       if (names[k].find(" (J") != std::string::npos && !has(names[k], "heat"))
-        largest = std::max(largest, std::abs(std::stod(cell)));
+        largest = larger(largest, std::abs(std::stod(cell)));
       if ((row == 1 || row == 2) && names[k].starts_with("strain energy")) {
         before = std::stod(cell);
         cell = Json(before + (row == 2 ? 1e-6 : 1e-7)).dump();

@@ -490,7 +490,7 @@ std::vector<Derived> derived_sentences(const std::function<fs::path(const std::s
     for (const std::string cells : {"10", "20"}) {
       const double four = of(particles, "a_" + a + "-4_4_particles_a_cell-L0_" + cells, L),
                    two = of(particles, "a_" + a + "-2_2_particles_a_cell-L0_" + cells, L);
-      change = std::max(change, std::abs(percent(four, two)));
+      change = larger(change, std::abs(percent(four, two)));
     }
   all.push_back({"change the run-out by # % at most", {change}});
   const auto at_floor = [&](double a) {
@@ -518,9 +518,9 @@ std::vector<Derived> derived_sentences(const std::function<fs::path(const std::s
   double nearest = 100, farthest = 0, grid = 0, least = 100, most = 0;
   for (const auto& [T, Z] : measured_front) {
     const double early = T - along(fine, Z, 1), ahead = percent(along(fine, T), Z);
-    least = std::min(least, early), most = std::max(most, early);
-    if (T > 1.2) nearest = std::min(nearest, ahead), farthest = std::max(farthest, ahead);
-    if (T > 2) grid = std::max(grid, percent(along(fine, T), along(coarse, T)));
+    least = smaller(least, early), most = larger(most, early);
+    if (T > 1.2) nearest = smaller(nearest, ahead), farthest = larger(farthest, ahead);
+    if (T > 2) grid = larger(grid, percent(along(fine, T), along(coarse, T)));
     all.push_back({"| " + short_number(T) + " | # | # | # | # | # % | # |",
                    {Z, along(coarse, T), along(fine, T), along(flip, T), percent(along(fine, T - 0.2), Z), early}});
   }

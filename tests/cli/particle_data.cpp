@@ -182,9 +182,9 @@ TEST_CASE("all backends and precisions write particles and grids that agree") {
     INFO(tables[0].header[k]);
     double largest = 0, differ = 0, differ_float = 0;
     for (std::size_t p = 0; p < tables[0].rows(); ++p) {
-      largest = std::max(largest, std::abs(tables[0].columns[k][p]));
-      differ = std::max(differ, std::abs(tables[1].columns[k][p] - tables[0].columns[k][p]));
-      differ_float = std::max(differ_float, std::abs(tables[2].columns[k][p] - tables[0].columns[k][p]));
+      largest = larger(largest, std::abs(tables[0].columns[k][p]));
+      differ = larger(differ, std::abs(tables[1].columns[k][p] - tables[0].columns[k][p]));
+      differ_float = larger(differ_float, std::abs(tables[2].columns[k][p] - tables[0].columns[k][p]));
     }
     CHECK(differ <= 1e-9 * largest + 1e-12);
     CHECK(differ_float <= 2e-2 * largest + 1e-4);

@@ -350,7 +350,7 @@ TEST_CASE("the areas of the heat figure sum to the heat gained, whatever the wal
     double sum = 0, largest = 0;
     for (std::size_t k = 1; k < drawn.columns.size(); ++k) {
       sum += drawn.columns[k].back();
-      largest = std::max(largest, std::abs(drawn.columns[k].back()));
+      largest = larger(largest, std::abs(drawn.columns[k].back()));
     }
     CHECK(std::abs(gained) > 10);
     CHECK(std::abs(sum - gained) < 1e-6 * largest);

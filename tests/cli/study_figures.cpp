@@ -75,7 +75,7 @@ double wave_speed_in(const Experiment& experiment) {
   for (const MaterialSpecification& material : experiment.materials) {
     const Component& law = material.component;
     try {
-      speed = std::max(speed, std::sqrt(law.parameter("youngs_modulus") / law.parameter("density")));
+      speed = larger(speed, std::sqrt(law.parameter("youngs_modulus") / law.parameter("density")));
     } catch (const std::out_of_range&) {  // a law without such a parameter
     }
   }
@@ -328,7 +328,7 @@ std::size_t compare(const study::Study& study, const Table& table, bool in_float
   std::map<std::string, double> largest;
   for (const TableRow& row : kept)
     for (const auto& [column, value] : row.numbers)
-      if (std::isfinite(value)) largest[column] = std::max(largest[column], std::abs(value));
+      if (std::isfinite(value)) largest[column] = larger(largest[column], std::abs(value));
   std::size_t compared = 0, stale = 0;
   const auto report = [&](const TableRow& row, const std::string& what) {
     constexpr std::size_t most = 3;

@@ -68,7 +68,7 @@ TEST_CASE("the extremes of contact are those of its columns") {
   for (std::size_t row = 0; row < time.size(); ++row) {
     const double now = std::hypot(x[row], y[row]);
     if (std::isnan(first) && now > 0) first = time[row];
-    force = std::max(force, now);
+    force = larger(force, now);
   }
   CHECK(first > 0);
   CHECK(contact["first_time"].get<double>() == Approx(first));

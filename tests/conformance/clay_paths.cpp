@@ -11,6 +11,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 using namespace mpm::test::soils;
 
 constexpr double consolidation = 1e5, critical = 1.2, exponent = 20;
@@ -69,7 +70,7 @@ TEST_CASE("Cam-Clay: drained triaxial tests end at the critical state q = M p, p
       double strongest = 0;
       for (int step = 0; step < 1000; ++step) {
         particle.squeeze(direction * 1e-3, side);
-        strongest = std::max(strongest, particle.q());
+        strongest = larger(strongest, particle.q());
       }
       const double volume = particle.state.plastic_volume_ratio, heat = particle.heat;
       CHECK(particle.q() == Approx(q).epsilon(1e-6));
@@ -195,7 +196,7 @@ TEST_CASE("Cam-Clay: the slope of hardening is held at half of that at which str
         const double squared = M * M * (p + beta) * (1 - p) / (1 + 2 * beta), a = 1 + 2 * beta;
         const double stiffness = flow * flow + 12 * shear / bulk * a * a * squared;
         const double falls = -M * M * ((1 - beta) * p + 2 * beta) * flow;
-        if (falls > 0) least = std::min(least, stiffness / falls);
+        if (falls > 0) least = smaller(least, stiffness / falls);
       }
       const double xi = 500, straight = 0.5 * least * bulk;
       Particle<CamClay> particle = clay(beta, xi, M);
@@ -298,7 +299,7 @@ TEST_CASE("Cam-Clay: within the ellipse it closes its loops, beyond work is stor
     double least = 0;
     for (const auto& leg : legs)
       for (int step = 0; step < steps; ++step)
-        least = std::min(least, particle.strain(leg[0] / steps, leg[1] / steps, leg[2] / steps));
+        least = smaller(least, particle.strain(leg[0] / steps, leg[1] / steps, leg[2] / steps));
     CHECK(least >= 0);
     const double miss = std::abs(particle.work - particle.energy() - particle.heat) / particle.work;
     CHECK(miss < 10.0 / steps);

@@ -679,7 +679,7 @@ std::vector<Column> scales(const Plugin& plugin, int D, const ParameterSample& p
   std::vector<Column> scale;
   for (const Column& column : expected.out) {
     double largest = 1e-300;
-    for (double value : column) largest = std::max(largest, std::abs(value));
+    for (double value : column) largest = mpm::test::larger(largest, std::abs(value));
     scale.emplace_back(column.size(), largest);
   }
   if (plugin.descriptor->kind != MPM_MATERIAL) return scale;
@@ -691,7 +691,7 @@ std::vector<Column> scales(const Plugin& plugin, int D, const ParameterSample& p
       if (k > 0) scale[k][i] = stress;
       const std::size_t row = i - i % particles;  // the same component of all particles
       for (std::size_t lane = row; lane < row + particles; ++lane)
-        scale[k][i] = std::max(scale[k][i], roundings_of_state * grown[k][lane]);
+        scale[k][i] = mpm::test::larger(scale[k][i], roundings_of_state * grown[k][lane]);
     }
   return scale;
 }

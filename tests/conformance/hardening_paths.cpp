@@ -19,6 +19,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 using Mat3 = Mat<3, double>;
 
 constexpr double young = 200e3, poisson = 0.3, density = 1000, shear = young / (2 * (1 + poisson));
@@ -176,12 +177,12 @@ void check_consistency(const Parameters& parameters, const FlowCurve& curve, dou
   double off = 0, above = 0, least_heat = 0;
   for (int k = 0; k < 4000; ++k) {
     const double before = particle.plastic();
-    least_heat = std::min(least_heat, particle.advance(random_increment(seed, k % 3 ? 3e-4 : 3e-2)));
+    least_heat = smaller(least_heat, particle.advance(random_increment(seed, k % 3 ? 3e-4 : 3e-2)));
     const double flowed = particle.plastic() - before, law = curve(particle.plastic(), flowed / dt, temperature);
     const double excess = particle.equivalent_stress() / law - 1;
     if (flowed > 0 && flowed < 1e-5) continue;  // their rate drowns in the rounding of the difference
-    above = std::max(above, excess);
-    if (flowed > 0) off = std::max(off, std::abs(excess)), ++flows;
+    above = larger(above, excess);
+    if (flowed > 0) off = larger(off, std::abs(excess)), ++flows;
   }
   CAPTURE(flows, off, above, temperature, dt, particle.plastic());
   CHECK(flows > 500);
@@ -201,7 +202,7 @@ void check_is_linear(const Parameters& parameters, double yield, double hardenin
     heat += particle.advance(random_increment(seed, 3e-3));
     linear_heat += linear.advance(random_increment(same, 3e-3));
     const Sym<3, double> a = particle.stress(), b = linear.stress();
-    for (int c = 0; c < 6; ++c) worst = std::max(worst, std::abs(a.s[c] - b.s[c]) / yield);
+    for (int c = 0; c < 6; ++c) worst = larger(worst, std::abs(a.s[c] - b.s[c]) / yield);
   }
   CAPTURE(linear.plastic(), worst);
   REQUIRE(linear.plastic() > 0.1);
@@ -427,7 +428,7 @@ TEST_CASE("Johnson-Cook: the increment is found by Newton's method and not by ha
         int own = 0;
         const double trial = (90 + 292 * std::pow(start, 0.31)) * (1 + excess);
         plastic_increment(Counted{law, &own}, start, trial, stiffness, dt, true);
-        asked += own, ++steps, most = std::max(most, own);
+        asked += own, ++steps, most = larger(most, own);
       }
   CAPTURE(static_cast<double>(asked) / steps, most);
   CHECK(asked < 15 * steps);

@@ -14,6 +14,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 
 constexpr double mass = 1.5, area = 0.2;
 
@@ -79,7 +80,7 @@ TEST_CASE("a pair joined by a spring stays on its sinusoid") {
       displacement += speed * dt;
       if (n == 1) first = displacement;
       const double exact = (first * std::sin(n * theta) - 0.02 * std::sin((n - 1) * theta)) / std::sin(theta);
-      largest = std::max(largest, std::abs(displacement - exact));
+      largest = larger(largest, std::abs(displacement - exact));
     }
     INFO(theta);
     CHECK(largest < 1e-9);

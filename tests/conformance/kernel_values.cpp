@@ -281,7 +281,7 @@ std::array<int, 2> counts(double l) {
 template <class List>
 double farthest(const List& list, double x) {
   double most = 0;
-  for (int n = 0; n < list.count; ++n) most = std::max(most, std::abs(list.node[n][0] - x));
+  for (int n = 0; n < list.count; ++n) most = mpm::test::larger(most, std::abs(list.node[n][0] - x));
   return most;
 }
 

@@ -11,6 +11,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 using Mat3 = Mat<3, double>;
 
 constexpr double bulk = 5000, density = 1000, polymer = 30, time_constant = 0.5, solvent = 8, cell = 0.1;
@@ -87,14 +88,14 @@ TEST_CASE("Oldroyd-B: stress grows in start-up as 1 - exp(-t/lambda), N1 as 1 - 
     const Sym<3, double> tau = particle.stress();
     CHECK(tau(0, 1) == Approx(polymer * rate * -std::expm1(-x)).epsilon(1e-11));  // for any step
     const double normal = 2 * polymer * time_constant * rate * rate * (1 - (1 + x) * std::exp(-x));
-    error[0] = std::max(error[0], std::abs(tau(0, 0) - tau(1, 1) - normal));
+    error[0] = larger(error[0], std::abs(tau(0, 0) - tau(1, 1) - normal));
   }
   Particle finer(0);
   for (int k = 1; k <= 400; ++k) {
     finer.step(shearing(rate), dt / 2);
     const double x = k * dt / 2 / time_constant;
     const double normal = 2 * polymer * time_constant * rate * rate * (1 - (1 + x) * std::exp(-x));
-    error[1] = std::max(error[1], std::abs(finer.stress()(0, 0) - finer.stress()(1, 1) - normal));
+    error[1] = larger(error[1], std::abs(finer.stress()(0, 0) - finer.stress()(1, 1) - normal));
   }
   CHECK(error[0] / (2 * polymer * time_constant * rate * rate) < 1e-3);
   CHECK(std::log2(error[0] / error[1]) == Approx(2).epsilon(0.05));

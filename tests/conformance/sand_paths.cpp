@@ -10,6 +10,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 using Mat3 = Mat<3, double>;
 using State3 = DruckerPrager::State<3, double>;
 
@@ -138,10 +139,10 @@ TEST_CASE("a gap opened in tension must close before pressure returns") {
   for (int step = 0; step < 80; ++step) {
     sand.advance(-1e-3, -1e-3, -1e-3);
     const double volume = std::log(sand.state.volume_ratio), pressure = sand.p();
-    if (volume > 1e-12) worst = std::max(worst, std::abs(pressure));
+    if (volume > 1e-12) worst = larger(worst, std::abs(pressure));
     if (volume < 0) {
       CHECK(std::abs(pressure / (-bulk * volume) - 1) < 1e-10);
-      least = std::min(least, volume);
+      least = smaller(least, volume);
     }
   }
   CHECK(worst < 1e-7);
@@ -184,7 +185,7 @@ TEST_CASE("cohesive sand parts at c cot phi, unloads its tension, and presses ag
   double strongest = 0;
   while (std::log(sand.state.volume_ratio) > 3e-3) {
     CHECK(sand.advance(-1e-3, -1e-3, -1e-3) >= 0);
-    strongest = std::max(strongest, sand.p());
+    strongest = larger(strongest, sand.p());
   }
   CHECK(strongest < 1e-7);
   for (int step = 0; step < 10; ++step) CHECK(sand.advance(-1e-3, -1e-3, -1e-3) >= -1e-20 * young);
@@ -221,7 +222,7 @@ TEST_CASE("sand: the wave speed at rest is the fastest that yielding on the cone
     CAPTURE(angle);
     const double sine = std::sin(angle * degree), k = most * 2 * sine / (3 - sine) * 3 * bulk / (2 * shear);
     double largest = 0;  // of u (k - u) over the components -u of unit deviators
-    for (int n = 0; n <= 100000; ++n) largest = std::max(largest, n * 1e-5 * most * (k - n * 1e-5 * most));
+    for (int n = 0; n <= 100000; ++n) largest = larger(largest, n * 1e-5 * most * (k - n * 1e-5 * most));
     const double modulus = bulk + 4 * shear / 3 + 2 * shear * largest;
     const Particle sand(angle * degree, 0);
     const double speed = DruckerPrager::wave_speed(sand.constants, sand.state);

@@ -16,6 +16,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 using namespace mpm::test::soils;
 
 // ---- Mohr-Coulomb ------------------------------------------------------------------------------------------------
@@ -54,7 +55,7 @@ struct ActiveSets {
 
   double violation(const Vec3& tau) const {
     double most = -1e300;
-    for (const Vec3& n : normal) most = std::max(most, HenckySolid::dot(n, tau) - strength);
+    for (const Vec3& n : normal) most = larger(most, HenckySolid::dot(n, tau) - strength);
     return most;
   }
 
@@ -213,7 +214,7 @@ TEST_CASE("Mohr-Coulomb: the return is that of the active planes that Koiter's c
     const double heat = particle.strain(e[0], e[1], e[2]);
     const Sym<3, double> tau = particle.stress();
     const double scale = std::max({std::abs(trial[0]), std::abs(trial[1]), std::abs(trial[2])});
-    for (int i = 0; i < 3; ++i) worst = std::max(worst, std::abs(tau.s[i] - exact[i]) / scale);
+    for (int i = 0; i < 3; ++i) worst = larger(worst, std::abs(tau.s[i] - exact[i]) / scale);
     CHECK(heat >= -1e-15 * scale);
     const bool same01 = std::abs(exact[0] - exact[1]) < 1e-9 * scale,
                same12 = std::abs(exact[1] - exact[2]) < 1e-9 * scale;
@@ -330,10 +331,10 @@ TEST_CASE("Mohr-Coulomb: the fastest waves at psi = phi are elastic, and flow th
       const double polar = 3.14159265358979 * i / 400, around = 3.14159265358979 * j / 400;
       const Vec3 x{{std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar)}};
       const double sum = x[0] + x[1] + x[2], elastic = 1 + 0.75 * sum * sum;
-      most = std::max(most, -HenckySolid::dot(x, Cm) * HenckySolid::dot(x, Cn) / 2);
+      most = larger(most, -HenckySolid::dot(x, Cm) * HenckySolid::dot(x, Cn) / 2);
       for (const Vec3& l : {Vec3{{0.5, 1.5, 1.5}}, Vec3{{0.5, 0.5, 1.5}}}) {
         const double bound = HenckySolid::dot(g, l) - s * trace_of_g * HenckySolid::sum(l);
-        most = std::max(most, HenckySolid::dot(x, l) * sum / bound - elastic);
+        most = larger(most, HenckySolid::dot(x, l) * sum / bound - elastic);
       }
     }
   CHECK(modulus(soil(30, 0, 0)) == Approx(bulk + 4 * shear / 3 + 2 * shear * most).epsilon(1e-4));
@@ -350,7 +351,7 @@ TEST_CASE("Mohr-Coulomb: at other angles and Poisson ratios the fastest waves ar
     // The most that the tangent of normal strains has over the elastic one.
     const auto grows_to = [&](const Eigen::Matrix3d& tangent) {
       const Eigen::Matrix3d change = tangent - C, symmetric = 0.5 * (change + change.transpose());
-      most = std::max(most, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric).eigenvalues().maxCoeff());
+      most = larger(most, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric).eigenvalues().maxCoeff());
     };
     grows_to(C - C * m * n.transpose() * C / n.dot(C * m));
     for (double middle : {-1.0, 1.0}) {
@@ -530,7 +531,7 @@ TEST_CASE("mu(I): below mu_s it is Hencky's law, keeps F_e to the last bit and c
     double least = 0;
     for (const auto& leg : legs)
       for (int step = 0; step < steps; ++step)
-        least = std::min(least, flowing.strain(leg[0] / steps, leg[1] / steps, leg[2] / steps));
+        least = smaller(least, flowing.strain(leg[0] / steps, leg[1] / steps, leg[2] / steps));
     CHECK(least >= -1e-16 * young);
     const double miss = std::abs(flowing.work - flowing.energy() - flowing.heat) / flowing.work;
     CHECK(miss < 10.0 / steps);
@@ -545,7 +546,7 @@ TEST_CASE("mu(I): the wave speed at rest is the fastest that yielding on the con
     double largest = 0;  // of u (k - u) over the components -u of unit deviators
     for (int n = 0; n <= 100000; ++n) {
       const double u = n * 1e-5 * std::sqrt(2.0 / 3);
-      largest = std::max(largest, u * (k - u));
+      largest = larger(largest, u * (k - u));
     }
     const Particle<MuI> particle = grains(0, limit);
     const double speed = MuI::wave_speed(particle.constants, particle.state);

@@ -17,6 +17,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 
 /// The spin that RPIC makes of an affine field and a second moment.
 template <int D, class T>
@@ -48,7 +49,7 @@ double spin_error(const Mat<D, double>& C, const Mat<D, double>& M) {
         left += W(i, k) * M(k, j) + M(i, k) * W(k, j);
         right += C(i, k) * M(k, j) - C(j, k) * M(k, i);
       }
-      worst = std::max({worst, std::abs(left - right), std::abs(W(i, j) + W(j, i))});
+      worst = larger(worst, larger(std::abs(left - right), std::abs(W(i, j) + W(j, i))));
     }
   return worst;
 }
@@ -65,7 +66,7 @@ double largest_returned_spin() {
         Mat<D, T> C{};
         C(i, j) = T(3), C(j, i) = T(-3);
         const double back = spin_of(C, multiple_of_identity<D>(moment))(i, j) / 3;
-        largest = std::max(largest, std::isfinite(back) && back >= 0 ? back : 2.0);
+        largest = larger(largest, std::isfinite(back) && back >= 0 ? back : 2.0);
       }
   }
   return largest;

@@ -18,6 +18,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 using Mat2 = Mat<2, double>;
 using Sym2 = Sym<2, double>;
 
@@ -37,7 +38,7 @@ Sym2 rotated(const Sym2& tau, double angle) {
 
 double difference(const Sym2& a, const Sym2& b) {
   double worst = 0;
-  for (int k = 0; k < 4; ++k) worst = std::max(worst, std::abs(a.s[k] - b.s[k]));
+  for (int k = 0; k < 4; ++k) worst = larger(worst, std::abs(a.s[k] - b.s[k]));
   return worst;
 }
 

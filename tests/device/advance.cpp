@@ -41,7 +41,7 @@ double difference_to_apart(Mix mix, const std::string& precision) {
   together.run(), one_by_one.run();
   double worst = 0;
   for (int body = 0; body < 2; ++body)
-    worst = std::max(worst, state_difference(together.experiment, one_by_one.body(body), together.body(body)));
+    worst = larger(worst, state_difference(together.experiment, one_by_one.body(body), together.body(body)));
   return worst / epsilon_of(precision);
 }
 

@@ -12,6 +12,7 @@
 #include "backends/device/drivers/host_driver.hpp"
 #include "backends/device/make_device_backend.hpp"
 #include "parity/parity.hpp"
+#include "support/larger.hpp"
 #include "support/trials.hpp"
 
 namespace mpm::test {
@@ -188,20 +189,20 @@ inline double state_difference(const Experiment& experiment, const BodyState& ex
   wrap_onto(experiment, expected.position, found.position);
   double worst = std::max(difference(expected.position, found.position, 1.0),
                           difference(expected.velocity, found.velocity, speed));
-  worst = std::max(worst, difference(expected.domain, found.domain, h));
-  worst = std::max(worst, difference(expected.corners, found.corners, h));
-  worst = std::max(worst, difference(expected.second_moment, found.second_moment, h * h));
+  worst = larger(worst, difference(expected.domain, found.domain, h));
+  worst = larger(worst, difference(expected.corners, found.corners, h));
+  worst = larger(worst, difference(expected.second_moment, found.second_moment, h * h));
   const auto fields = [&](const auto& a, const auto& b, double scale) {
     REQUIRE(a.size() == b.size());
-    for (const auto& [name, values] : a) worst = std::max(worst, difference(values, b.at(name), scale));
+    for (const auto& [name, values] : a) worst = larger(worst, difference(values, b.at(name), scale));
   };
   fields(expected.transfer_state, found.transfer_state, speed / h);
   REQUIRE(expected.material_state.size() == found.material_state.size());
   for (const auto& [name, values] : expected.material_state)
-    worst = std::max(worst, difference(values, found.material_state.at(name), size_of(values)));
+    worst = larger(worst, difference(values, found.material_state.at(name), size_of(values)));
   REQUIRE(expected.host_state.size() == found.host_state.size());
   for (const auto& [name, values] : expected.host_state)
-    worst = std::max(worst, difference(values, found.host_state.at(name), scale_of(name, h)));
+    worst = larger(worst, difference(values, found.host_state.at(name), scale_of(name, h)));
   return worst;
 }
 
@@ -210,7 +211,7 @@ template <class Reference>
 double scene_difference(const Reference& reference, const DeviceScene& found) {
   double worst = difference(ledger_values(reference), ledger_values(found), reference.metrics.initial().kinetic);
   for (int body = 0; body < static_cast<int>(reference.experiment.bodies.size()); ++body)
-    worst = std::max(worst, state_difference(reference.experiment, reference.body(body), found.body(body)));
+    worst = larger(worst, state_difference(reference.experiment, reference.body(body), found.body(body)));
   return worst;
 }
 
@@ -236,7 +237,7 @@ double book_difference(const Reference& reference, const DeviceScene& found) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (!rows[k].name.ends_with(" book")) continue;
     const double size = rows[k].unit == "J" ? start.kinetic : start.mass * (rows[k].unit == "kg" ? 1 : 1.5);
-    worst = std::max(worst, std::abs(rows[k].value - expected[k].value) / size);
+    worst = larger(worst, std::abs(rows[k].value - expected[k].value) / size);
   }
   return worst;
 }

@@ -62,13 +62,13 @@ double scaled_difference(const Experiment& experiment, const BodyState& expected
     length = std::max({length, std::abs(experiment.grid.lower[c]), std::abs(experiment.grid.upper[c])});
   double worst = std::max(difference(expected.position, found.position, length),
                           difference(expected.velocity, found.velocity, speed));
-  worst = std::max(worst, difference(expected.domain, found.domain, h));
-  worst = std::max(worst, difference(expected.corners, found.corners, h));
-  worst = std::max(worst, difference(expected.second_moment, found.second_moment, h * h));
+  worst = larger(worst, difference(expected.domain, found.domain, h));
+  worst = larger(worst, difference(expected.corners, found.corners, h));
+  worst = larger(worst, difference(expected.second_moment, found.second_moment, h * h));
   for (const auto& [name, values] : expected.transfer_state)
-    worst = std::max(worst, difference(values, found.transfer_state.at(name), speed / h));
+    worst = larger(worst, difference(values, found.transfer_state.at(name), speed / h));
   for (const auto& [name, values] : expected.material_state)
-    worst = std::max(worst, difference(values, found.material_state.at(name), size_of(values)));
+    worst = larger(worst, difference(values, found.material_state.at(name), size_of(values)));
   return worst;
 }
 

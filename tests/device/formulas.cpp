@@ -39,7 +39,7 @@ TEST_CASE("every operation of a formula gives particles on the host-run device w
         Vector3 x{};
         std::copy_n(body.position.begin() + static_cast<std::ptrdiff_t>(p * D), D, x.begin());
         const double value = std::abs(expression(x, x, 0.05)[0]);
-        largest = std::max(largest, value), smallest = std::min(smallest, value);
+        largest = larger(largest, value), smallest = smaller(smallest, value);
       }
       INFO(formula);
       CHECK(largest > 0.05);

@@ -119,6 +119,15 @@ TEST_CASE("the host waits within a step where contact looks at particles, or loa
   }
 }
 
+TEST_CASE("glue, whose law keeps a state, runs by graphs", "[device][graphs]") {
+  Mix mix = touching();
+  mix.contact = R"({"type": "breakable_glue", "tension_stiffness": 1e4, "compression_stiffness": 5e4,
+    "shear_stiffness": 2e4, "normal_strength": 60, "shear_strength": 90, "friction": 0.2})";
+  const Run plain = run(mix.text(), false), found = run(mix.text(), true);
+  check_same(plain, found);
+  CHECK(found.graph_launches >= found.steps - 4);
+}
+
 TEST_CASE("steps that ask the host for something are no graphs", "[device][graphs]") {
   for (const std::string& setting :
        {set("/grid/boundaries/y_min", R"({"type": "prescribed", "velocity": ["0.1*t", 0]})"),

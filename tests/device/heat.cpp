@@ -146,7 +146,9 @@ TEST_CASE("boxes of nodes that are warmed or held at a temperature on the host-r
   mix.boundaries = boundaries(2, "slip"), mix.contact = R"({"type": "coulomb", "friction": 0.2})";
   mix.more = R"(, "node_conditions": [)" + box(R"("type": "thermal", "temperature": "50")") +
              R"(, {"type": "thermal", "heating": 3000, "lower": [0.3, 0.2], "upper": [0.8, 0.6]},
-             {"type": "thermal", "temperature": 5, "lower": [0.1, 0.3], "upper": [0.3, 0.6]}])";
+             {"type": "thermal", "temperature": 5, "lower": [0.1, 0.3], "upper": [0.3, 0.6]},
+             {"type": "stick", "lower": [0.5, 0.4], "upper": [0.6, 0.5]}, )" +
+             R"({"type": "thermal", "heating": 3000, "lower": [0.32, 0.32], "upper": [0.34, 0.34]}])";  // between nodes
   check_heat(mix);
 }
 

@@ -52,9 +52,9 @@ double run_difference(const Run& expected, const Run& found, const std::string& 
   const Backend &a = expected.simulation.backend(), &b = found.simulation.backend();
   double worst = 0;
   for (int body = 0; body < static_cast<int>(expected.experiment.bodies.size()); ++body)
-    worst = std::max(worst, state_difference(expected.experiment, a.body_state(body), b.body_state(body)));
+    worst = larger(worst, state_difference(expected.experiment, a.body_state(body), b.body_state(body)));
   const double energy = Metrics(expected.simulation).initial().kinetic;
-  worst = std::max(worst, difference(ledger_values(expected), ledger_values(found), energy));
+  worst = larger(worst, difference(ledger_values(expected), ledger_values(found), energy));
   return worst / epsilon_of(precision);
 }
 

@@ -13,9 +13,9 @@ double difference_of_reactions(const std::vector<Reaction>& expected, const std:
   double size = 0, worst = 0;
   for (std::size_t k = 0; k < expected.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c) {
-      size = std::max(size, std::abs(expected[k].force[c]));
-      worst = std::max(worst, std::abs(expected[k].force[c] - found[k].force[c]));
-      worst = std::max(worst, std::abs(expected[k].moment[c] - found[k].moment[c]));
+      size = larger(size, std::abs(expected[k].force[c]));
+      worst = larger(worst, std::abs(expected[k].force[c] - found[k].force[c]));
+      worst = larger(worst, std::abs(expected[k].moment[c] - found[k].moment[c]));
     }
   REQUIRE(size > 0);
   return worst / size;

@@ -82,7 +82,8 @@ TEST_CASE("each sample sees the nearest of the balls on its ray", "[figures]") {
     for (int x = 0; x < 320; x += 3) {
       double nearest = kNothing;
       for (const Ball& ball : balls)
-        nearest = std::min(nearest, ahead_of_ball(ball, camera, rays.x[std::size_t(x)], rays.y[std::size_t(y)]));
+        nearest =
+            mpm::test::smaller(nearest, ahead_of_ball(ball, camera, rays.x[std::size_t(x)], rays.y[std::size_t(y)]));
       const float found = view.ahead[view.at(x, y)];
       covered += nearest < kNothing;
       // A ray that only touches a ball may miss it by rounding.

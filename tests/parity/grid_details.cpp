@@ -95,7 +95,7 @@ void check_reactions(const BothBackends& both) {
   REQUIRE(expected.size() == found.size());
   double size = 0;
   for (const Reaction& reaction : expected)
-    for (const double force : reaction.force) size = std::max(size, std::abs(force));
+    for (const double force : reaction.force) size = larger(size, std::abs(force));
   CHECK(size > 0);
   for (std::size_t k = 0; k < expected.size(); ++k) {
     check_vectors(expected[k].force, found[k].force, size);
@@ -169,7 +169,7 @@ TEST_CASE("pairs of bodies and nodes in contact are recorded alike", "[parity]")
   REQUIRE(reference.contact_pairs().size() == 3);
   REQUIRE(cpu.contact_pairs().size() == 3);
   double size = 0;
-  for (const PairRecord& pair : reference.contact_pairs()) size = std::max(size, std::abs(pair.normal_force));
+  for (const PairRecord& pair : reference.contact_pairs()) size = larger(size, std::abs(pair.normal_force));
   CHECK(size > 0);
   for (std::size_t k = 0; k < 3; ++k) {
     const PairRecord &expected = reference.contact_pairs()[k], &found = cpu.contact_pairs()[k];

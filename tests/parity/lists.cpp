@@ -51,7 +51,7 @@ double largest_reach(const Scene& scene) {
   for (std::size_t row = 0; row < state.domain.size() / D; ++row) {
     double reach = 0;
     for (int k = 0; k < D; ++k) reach += std::abs(state.domain[row * D + k]);
-    largest = std::max(largest, reach / scene.experiment.grid.cell_size);
+    largest = larger(largest, reach / scene.experiment.grid.cell_size);
   }
   return largest;
 }

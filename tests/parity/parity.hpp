@@ -207,7 +207,7 @@ inline void wrap_onto(const Experiment& experiment, const std::vector<double>& r
 /// The size by which a material's state is judged: strains and stretches are of order 1, stresses larger.
 inline double size_of(const std::vector<double>& values) {
   double largest = 1;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
+  for (const double value : values) largest = larger(largest, std::abs(value));
   return largest;
 }
 
@@ -286,7 +286,7 @@ std::vector<double> ledger_values(const AnyScene& scene) {
 /// The largest difference of two ledgers' entries over `energy` or the largest entry: a particle whose affine velocity is
 /// divided by next to nothing (linear, beside a node) gives entries far beyond all energy there is.
 inline double ledger_difference(const std::vector<double>& expected, const std::vector<double>& found, double energy) {
-  for (const double entry : expected) energy = std::max(energy, std::abs(entry));
+  for (const double entry : expected) energy = larger(energy, std::abs(entry));
   return energy == 0 && expected == found ? 0 : difference(expected, found, energy);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "parity/parity.hpp"
+#include "support/larger.hpp"
 
 namespace mpm::test {
 
@@ -33,8 +34,8 @@ inline double difference_at_rigid_bodies(const Backend& expected, const Backend&
     const RigidState &at_a = expected.rigid_bodies()[body], &at_b = found.rigid_bodies()[body];
     const auto compare = [&](const Vector3& x, const Vector3& y, bool counts) {
       for (std::size_t c = 0; c < 3; ++c) {
-        worst = std::max(worst, std::abs(x[c] - y[c]));
-        if (counts) size = std::max(size, std::abs(x[c]));
+        worst = larger(worst, std::abs(x[c] - y[c]));
+        if (counts) size = larger(size, std::abs(x[c]));
       }
     };
     compare(at_a.force_on(a), at_b.force_on(b), true);

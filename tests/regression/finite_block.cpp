@@ -50,7 +50,7 @@ TEST_CASE("the widest gap changes the peak force of two spheres by less than fou
                          {set("/contact/normal", normal), "/bodies/0/geometry/of/0/centre/1=-" + place,
                           "/bodies/1/geometry/of/0/centre/1=" + place});
       double force = 0;
-      scene.run([&] { force = std::max(force, std::abs(scene.simulation.backend().contact_record().force[1])); });
+      scene.run([&] { force = larger(force, std::abs(scene.simulation.backend().contact_record().force[1])); });
       return force;
     };
     CHECK(peak("widest_gap") == Approx(peak("average_volume_gradient")).epsilon(0.04));

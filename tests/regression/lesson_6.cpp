@@ -23,7 +23,7 @@ double melted(const Lesson& lesson) {
 double height(const Lesson& lesson) {
   const BodyState state = lesson.simulation.backend().body_state(0);
   double highest = 0;
-  for (std::size_t k = 1; k < state.position.size(); k += 2) highest = std::max(highest, state.position[k]);
+  for (std::size_t k = 1; k < state.position.size(); k += 2) highest = larger(highest, state.position[k]);
   return highest;
 }
 

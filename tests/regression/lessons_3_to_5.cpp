@@ -30,7 +30,7 @@ double largest_distance(const Lesson& a, const Lesson& b) {
   for (int body = 0; body < 2; ++body) {
     const BodyState s = a.simulation.backend().body_state(body), t = b.simulation.backend().body_state(body);
     for (std::size_t k = 0; k < s.position.size(); ++k)
-      largest = std::max(largest, std::abs(s.position[k] - t.position[k]));
+      largest = larger(largest, std::abs(s.position[k] - t.position[k]));
   }
   return largest;
 }
@@ -182,8 +182,8 @@ TEST_CASE("lesson 4: higher orders lose less, in more and shorter steps", "[less
       CHECK(record.iterations == order - 1);
       if (order > 1) CHECK(record.last_norm < record.first_norm);
       CHECK(record.largest_growth <= 1 + 1e-12);
-      increment = std::max(increment, record.last_norm);
-      if (lesson.simulation.time() < 1) in_flight = std::max(in_flight, record.last_norm);
+      increment = larger(increment, record.last_norm);
+      if (lesson.simulation.time() < 1) in_flight = larger(in_flight, record.last_norm);
     }
     if (order > 1) CHECK(increment == increments[row - 1]);
     if (order > 1) CHECK(in_flight < 1e-12);
@@ -253,7 +253,7 @@ TEST_CASE("lesson 5: only the bar of CPDI comes back", "[lesson]") {
     Totals now;
     while (!lesson.simulation.finished()) {
       now = lesson.step();
-      largest = std::max(largest, now.centre_of_mass[0]);
+      largest = larger(largest, now.centre_of_mass[0]);
     }
     return std::array{largest, now.centre_of_mass[0], kept_energy(lesson, now)};
   };
@@ -293,7 +293,7 @@ TEST_CASE("lesson 5: only the bar of CPDI comes back", "[lesson]") {
   Totals now;
   while (!swing.simulation.finished()) {
     now = swing.step();
-    shortest = std::min(shortest, now.centre_of_mass[0] / swing.metrics.initial().centre_of_mass[0]);
+    shortest = smaller(shortest, now.centre_of_mass[0] / swing.metrics.initial().centre_of_mass[0]);
   }
   CHECK(per_cent(shortest) == swung[0]);
   CHECK(per_cent(swing.largest_energy / swing.metrics.initial().total_energy() - 1) == swung_energy[0]);

@@ -145,7 +145,7 @@ TEST_CASE("the page of the material point has the speeds of waves at rest, and w
       CHECK(speed == page.read("`ideal_gas` has # m/s at rest").front().rounded());
       continue;
     }
-    least = std::min(least, speed), most = std::max(most, speed);
+    least = smaller(least, speed), most = larger(most, speed);
     if (law != "johnson_cook" && !law.starts_with("von_mises")) continue;
     const auto rows = extremes_of(*plugin, 3, 1);
     const auto pressed =

@@ -1,6 +1,8 @@
 // Catch2, whichever major version is installed; each suite's main comes from its build target.
 #pragma once
 
+#include "support/larger.hpp"
+
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
 using Catch::Approx;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solvers/solver.hpp"
+#include "support/larger.hpp"
 #include "support/scene.hpp"
 
 namespace mpm::test {
@@ -17,9 +18,9 @@ struct Lesson {
   Totals step() {
     simulation.step();
     const Totals now = metrics.measure();
-    smallest_volume_ratio = std::min(smallest_volume_ratio, now.smallest_volume_ratio);
-    largest_volume_ratio = std::max(largest_volume_ratio, now.largest_volume_ratio);
-    largest_energy = std::max(largest_energy, now.total_energy());
+    smallest_volume_ratio = smaller(smallest_volume_ratio, now.smallest_volume_ratio);
+    largest_volume_ratio = larger(largest_volume_ratio, now.largest_volume_ratio);
+    largest_energy = larger(largest_energy, now.total_energy());
     return now;
   }
   Totals run() {

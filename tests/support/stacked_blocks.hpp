@@ -53,8 +53,8 @@ inline void check_newton(Simulation& simulation, int steps, double bound) {
     Numbers now = chosen(metrics);
     // The force on the second block is minus that on the third, which has its weight beside it.
     const double force = (now["body b3 momentum y"] - before) / simulation.last_time_step() + block_weight;
-    worst = std::max(worst, std::abs(force + now["pair b2 b3 force y"]));
-    largest = std::max(largest, std::abs(force));
+    worst = larger(worst, std::abs(force + now["pair b2 b3 force y"]));
+    largest = larger(largest, std::abs(force));
     before = now["body b3 momentum y"];
     double sum = 0;
     for (const char* pair : {"pair b1 b2 ", "pair b1 b3 ", "pair b2 b3 "}) {

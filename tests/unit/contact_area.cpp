@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 
 namespace {
 
@@ -71,7 +72,7 @@ TEST_CASE("the shares of nodes in the area of contact add up to the area") {
           by_volumes += std::sqrt(2 * (a.volume + b.volume) * std::min(a.volume, b.volume));
         }
         CHECK(sum == Approx(1).epsilon(1e-12));
-        least = std::min(least, by_volumes), largest = std::max(largest, by_volumes);
+        least = smaller(least, by_volumes), largest = larger(largest, by_volumes);
       }
   // Why the published one is not taken (Nairn 2013, Comput. Model. Eng. Sci. 92:271, eq. 26).
   CHECK(least == Approx(0.71).margin(0.01));

@@ -13,6 +13,7 @@
 #include "support/scene.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 
 namespace {
 
@@ -49,7 +50,7 @@ double mean_of_half_plane(double angle, double face, double spacing, int n, int 
 
 double largest(const std::vector<double>& values) {
   double most = 0;
-  for (const double value : values) most = std::max(most, std::abs(value));
+  for (const double value : values) most = larger(most, std::abs(value));
   return most;
 }
 
@@ -109,8 +110,8 @@ TEST_CASE("gaps that detection by position finds between touching faces", "[cont
   const std::array<double, 3> angles{15 * degree, 30 * degree, 45 * degree};
   double splines = 0, tents = 0;
   for (const double angle : angles) {
-    splines = std::max(splines, largest(found_gaps(shape("bspline_quadratic"), {2, angle}, places())));
-    tents = std::max(tents, largest(found_gaps(shape("linear"), {2, angle}, places())));
+    splines = larger(splines, largest(found_gaps(shape("bspline_quadratic"), {2, angle}, places())));
+    tents = larger(tents, largest(found_gaps(shape("linear"), {2, angle}, places())));
   }
   // docs/contact.md says these.
   CHECK(splines == Approx(0.012).margin(5e-4));

@@ -91,7 +91,7 @@ TEST_CASE("functions in lanes are within 1 or 1.5 units in the last place", "[ex
       const long double exact = range.exact(points[p][0]);
       const double nearest = static_cast<double>(exact);
       const double unit = std::nextafter(std::abs(nearest), infinity) - std::abs(nearest);
-      worst = std::max(worst, static_cast<double>(std::abs(found[p] - exact)) / unit);
+      worst = larger(worst, static_cast<double>(std::abs(found[p] - exact)) / unit);
     }
     INFO(range.text << " from " << range.lower << " to " << range.upper << " errs by " << worst << " ulp");
     CHECK(worst <= range.most);
@@ -259,7 +259,7 @@ TEST_CASE("functions in lanes of float are within 1 or 1.5 units in the last pla
     const std::vector<float> found = float_values(formula_of(range.text), x, x);
     double worst = 0;
     for (std::size_t p = 0; p < x.size(); ++p)
-      worst = std::max(worst, float_ulps(found[p], range.exact(static_cast<double>(x[p]))));
+      worst = larger(worst, float_ulps(found[p], range.exact(static_cast<double>(x[p]))));
     INFO(range.text << " from " << range.lower << " to " << range.upper << " errs by " << worst << " ulp");
     CHECK(worst <= range.most);
   }

@@ -9,6 +9,7 @@
 #include "support/catch.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 
 namespace {
 
@@ -32,7 +33,7 @@ Mat<D, double> difference(const Mat<D, double>& a, const Mat<D, double>& b) {
 template <int D>
 double largest(const Mat<D, double>& a) {
   double r = 0;
-  for (const double entry : a.m) r = std::max(r, std::abs(entry));
+  for (const double entry : a.m) r = larger(r, std::abs(entry));
   return r;
 }
 

@@ -34,7 +34,7 @@ double worst_log() {
     for (const T x : {static_cast<T>(std::exp(decades * 0.98 * k / 20000)), static_cast<T>(1 + k * 2e-5),
                       static_cast<T>(1 + k * 1e-9)})
       if (x >= std::numeric_limits<T>::min())
-        worst = std::max(worst, ulps(log_of(x), std::log(static_cast<long double>(x))));
+        worst = mpm::test::larger(worst, ulps(log_of(x), std::log(static_cast<long double>(x))));
   }
   return worst;
 }
@@ -46,7 +46,7 @@ double worst_exp() {
   double worst = 0;
   for (int k = -20000; k <= 20000; ++k)
     for (const T x : {static_cast<T>(limit * k / 20000), static_cast<T>(k * 1e-4), static_cast<T>(k * 1e-9)})
-      worst = std::max(worst, ulps(exp_of(x), std::exp(static_cast<long double>(x))));
+      worst = mpm::test::larger(worst, ulps(exp_of(x), std::exp(static_cast<long double>(x))));
   return worst;
 }
 

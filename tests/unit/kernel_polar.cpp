@@ -15,6 +15,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 
 template <class T>
 constexpr double unit = sizeof(T) == 4 ? 0x1p-23 : 0x1p-52;
@@ -92,8 +93,8 @@ void judge(const Mat<D, T>& F, const Mat<D, T>& found, Errors& errors) {
   const Reference<D> expected = reference(exact(F));
   const double size = unit<T> * std::max(1.0, expected.condition);
   if (!(size < 0.01)) return;  // the rotation is not known that well
-  errors.turned = std::max(errors.turned, (R - expected.R).cwiseAbs().maxCoeff() / size);
-  errors.of_svd = std::max(errors.of_svd, (R - exact(polar_rotation(F))).cwiseAbs().maxCoeff() / size);
+  errors.turned = larger(errors.turned, (R - expected.R).cwiseAbs().maxCoeff() / size);
+  errors.of_svd = larger(errors.of_svd, (R - exact(polar_rotation(F))).cwiseAbs().maxCoeff() / size);
 }
 
 template <int D, class T>

@@ -13,6 +13,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 
 template <class T>
 constexpr double epsilon = sizeof(T) == 4 ? 0x1p-23 : 0x1p-52;
@@ -59,8 +60,8 @@ Judged<D, T> judged(const Mat<D, T>& A, const SingularValues<D, T>& r) {
         {judged.orthogonal, skew / epsilon<T>, std::abs(static_cast<double>(determinant(rotation)) - 1) / epsilon<T>});
   }
   for (int i = 0; i + 1 < D; ++i) {
-    judged.order = std::max(judged.order, (std::abs(shrunk[i + 1]) - shrunk[i]) / epsilon<T>);
-    judged.order = std::max(judged.order, -static_cast<double>(r.values[i]));
+    judged.order = larger(judged.order, (std::abs(shrunk[i + 1]) - shrunk[i]) / epsilon<T>);
+    judged.order = larger(judged.order, -static_cast<double>(r.values[i]));
   }
   return judged;
 }
@@ -142,7 +143,7 @@ void check_lanes() {
       for (int k = 0; k < D * D; ++k) one.U.m[k] = packed.U.m[k][lane], one.V.m[k] = packed.V.m[k][lane];
       for (int i = 0; i < D; ++i) one.values[i] = packed.values[i][lane];
       const Judged<D, T> j = judged(all[first + static_cast<std::size_t>(lane)], one);
-      worst = std::max(worst, j.product), skew = std::max(skew, j.orthogonal);
+      worst = larger(worst, j.product), skew = larger(skew, j.orthogonal);
     }
   }
   CHECK(worst <= 45);
@@ -169,11 +170,11 @@ TEMPLATE_TEST_CASE("left stretches agree with the singular values", "", float, d
     double stretches[] = {r.stretch[0], r.stretch[1], r.stretch[2]};
     std::sort(stretches, stretches + 3, std::greater<>());
     const double size = std::max(1.0, largest(A)), unit = epsilon<TestType>;
-    for (int i = 0; i < 3; ++i) value = std::max(value, std::abs(stretches[i] - std::abs(s.values[i])) / (size * unit));
+    for (int i = 0; i < 3; ++i) value = larger(value, std::abs(stretches[i] - std::abs(s.values[i])) / (size * unit));
     Vec<3, TestType> squared = r.stretch;
     for (TestType& entry : squared.v) entry *= entry;
-    product = std::max(product, distance(composed(r.U, squared, r.U), A * transposed(A)) / (size * size * unit));
-    rotation = std::max(rotation, distance(r.U * transposed(r.U), Mat<3, TestType>::identity()) / unit);
+    product = larger(product, distance(composed(r.U, squared, r.U), A * transposed(A)) / (size * size * unit));
+    rotation = larger(rotation, distance(r.U * transposed(r.U), Mat<3, TestType>::identity()) / unit);
   }
   CHECK(value <= 45);
   CHECK(product <= 96);  // a square has twice the error of its root, and the product rounds as well
@@ -221,9 +222,9 @@ TEMPLATE_TEST_CASE("polar decomposition: A = R P with a rotation and a symmetric
     Mat<3, TestType> A = random_matrix<3, TestType>(numbers);
     for (int i = 0; i < 3; ++i) A(i, i) += TestType(1.5);
     const Mat<3, TestType> R = polar_rotation(A), P = transposed(R) * A;
-    skew = std::max(skew, distance(P, transposed(P)) / epsilon<TestType>);
-    rotation = std::max(rotation, distance(R * transposed(R), Mat<3, TestType>::identity()) / epsilon<TestType>);
-    if (determinant(A) > 0) least = std::min(least, static_cast<double>(P(0, 0)));
+    skew = larger(skew, distance(P, transposed(P)) / epsilon<TestType>);
+    rotation = larger(rotation, distance(R * transposed(R), Mat<3, TestType>::identity()) / epsilon<TestType>);
+    if (determinant(A) > 0) least = smaller(least, static_cast<double>(P(0, 0)));
   }
   CHECK(skew <= 64);
   CHECK(rotation <= 32);

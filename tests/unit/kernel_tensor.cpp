@@ -10,6 +10,7 @@
 namespace {
 
 using namespace mpm;
+using namespace mpm::test;
 using Mat2 = Mat<2, double>;
 using Mat3 = Mat<3, double>;
 using Sym2 = Sym<2, double>;
@@ -105,8 +106,8 @@ TEST_CASE("the eigenvalue bound is a bound, and exact for axisymmetric tensors s
     for (int c = 0; c < 9; ++c) F.m[c] += 0.8 * number(9 * k + c);
     const Sym3 b = left_cauchy_green(F);
     const double ratio = largest_eigenvalue_bound(b) / largest_eigenvalue(b);
-    tightest = std::min(tightest, ratio);
-    loosest = std::max(loosest, ratio);
+    tightest = smaller(tightest, ratio);
+    loosest = larger(loosest, ratio);
   }
   CAPTURE(tightest, loosest);
   CHECK(tightest >= 1 - 1e-14);

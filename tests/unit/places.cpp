@@ -47,7 +47,7 @@ Sum sum_of(const Places& places) {
   for (std::size_t p = 0; p < places.points.size(); ++p) {
     const double share = places.shares.empty() ? 1 : places.shares[p];
     sum.volume += share * places.volume;
-    sum.lightest = std::min(sum.lightest, share);
+    sum.lightest = smaller(sum.lightest, share);
     for (int c = 0; c < 3; ++c) sum.middle[c] += share * places.volume * places.points[p][c];
   }
   for (double& x : sum.middle) x /= sum.volume;

@@ -76,10 +76,10 @@ TEST_CASE("all nodes near a rigid ball are listed, with its distance and normal"
     double worst = 0;
     for (const RigidNode& node : bodies.nodes(0)) {
       const Vector3 x = bodies.place(node);
-      worst = std::max(worst, std::abs(node.surface.distance - (from_centre(x) - radius)));
+      worst = larger(worst, std::abs(node.surface.distance - (from_centre(x) - radius)));
       for (std::size_t c = 0; c < 3; ++c) {
-        worst = std::max(worst, std::abs(node.surface.normal[c] + (x[c] - centre[c]) / from_centre(x)));
-        worst = std::max(worst, std::abs(node.arm[c] - (x[c] - centre[c])));
+        worst = larger(worst, std::abs(node.surface.normal[c] + (x[c] - centre[c]) / from_centre(x)));
+        worst = larger(worst, std::abs(node.arm[c] - (x[c] - centre[c])));
       }
     }
     CHECK(worst < 1e-8);

@@ -12,6 +12,7 @@
 #include "support/catch.hpp"
 
 using namespace mpm;
+using namespace mpm::test;
 
 namespace {
 
@@ -46,8 +47,8 @@ struct Clouds {
 
   double gap(const Vector3& normal) const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Vector3& x : a) high = std::max(high, along(normal, x));
-    for (const Vector3& x : b) low = std::min(low, along(normal, x));
+    for (const Vector3& x : a) high = larger(high, along(normal, x));
+    for (const Vector3& x : b) low = smaller(low, along(normal, x));
     return low - high;
   }
   Plane plane(int dimension) const {
@@ -112,7 +113,7 @@ TEST_CASE("no direction has a wider gap than the plane that is found", "[separat
           for (int c = 0; c < 3; ++c) n[c] = (1 - share) * found.normal[c] + share * n[c];
           const double length = std::hypot(n[0], n[1], n[2]);
           for (double& component : n) component /= length;
-          widest = std::max(widest, clouds.gap(n));
+          widest = larger(widest, clouds.gap(n));
         }
         CHECK(widest <= found.gap * (1 + 1e-9));
       }

@@ -76,7 +76,7 @@ TEST_CASE("the collisions that tents are warned with are those that the study co
         int least = 5;
         for (std::size_t k = 0; k < app::TentCollisions::steps.size(); ++k) {
           const int count = counts.at(app::TentCollisions::steps[k]);
-          least = std::min(least, count);
+          least = smaller(least, count);
           if (listed != nullptr) CHECK(listed->bounded[k] == count);
         }
         CHECK((listed != nullptr) == (least <= 2));

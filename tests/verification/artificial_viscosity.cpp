@@ -78,7 +78,7 @@ void check_motion(const Law& law, const Motion& L, const Run& run) {
     double worst = 0;
     for (std::size_t p = 0; p < found.size(); ++p) {
       const double expected = density * h * rate * (linear * speed[p] + quadratic * h * rate);
-      worst = std::max(worst, std::abs(found[p] - expected));
+      worst = larger(worst, std::abs(found[p] - expected));
       work += body.volume * body.size_of(p) * 0.5 * (before[p] + expected) * L.rate() * dt;
       before[p] = expected;
     }
@@ -196,7 +196,7 @@ Shock shock(const std::vector<std::string>& overrides, const char* name) {
   double momentum = 0, mass = 0, sum = 0, count = 0, largest = 0;
   for (std::size_t k = 0; k < p.size(); ++k) {
     mass += body.size_of(k), momentum += body.size_of(k) * body.velocity[2 * k];
-    largest = std::max(largest, p[k]);
+    largest = larger(largest, p[k]);
     if (const double x = body.position[2 * k]; x > 0.05 && x < 0.3) sum += p[k], ++count;
   }
   const double height = scene.experiment.grid.upper[1];
@@ -308,7 +308,7 @@ TEST_CASE("the automatic step stands strong artificial viscosity", "[viscosity]"
     });
     if (!scene.failure.empty()) return std::numeric_limits<double>::infinity();
     double largest = 0;
-    for (const double total : energies_at_one_time(kinetic, strain, update)) largest = std::max(largest, total);
+    for (const double total : energies_at_one_time(kinetic, strain, update)) largest = larger(largest, total);
     return largest / (kinetic[0] + strain[0]) - 1;
   };
   // With the step of waves alone the first of these gains several times the energy that there is.

@@ -34,7 +34,7 @@ std::vector<double> turning_times(Scene& scene, double& largest_energy_error) {
   while (!scene.simulation.finished()) {
     scene.simulation.step();
     const Totals now = scene.metrics.measure();
-    largest_energy_error = std::max(largest_energy_error, std::abs(now.total_energy() / energy - 1));
+    largest_energy_error = larger(largest_energy_error, std::abs(now.total_energy() / energy - 1));
     if (previous * now.momentum[0] < 0)
       times.push_back(now.time - now.time_step * now.momentum[0] / (now.momentum[0] - previous));
     previous = now.momentum[0];

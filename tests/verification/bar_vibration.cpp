@@ -72,11 +72,11 @@ Found vibrate(const Bar& bar) {
   while (!scene.simulation.finished()) {
     scene.simulation.step();
     now = scene.metrics.measure();
-    found.energy_error = std::max(found.energy_error, std::abs(now.total_energy() / start.total_energy() - 1));
+    found.energy_error = larger(found.energy_error, std::abs(now.total_energy() / start.total_energy() - 1));
     // The last particle lies half a cell from the end.
     const std::vector<double> x = scene.body().position;
     const std::size_t last = X.size() - 2;
-    if (w * now.time < 2 * pi) found.tip = std::max(found.tip, std::abs((x[last] - X[last]) / std::sin(b * X[last])));
+    if (w * now.time < 2 * pi) found.tip = larger(found.tip, std::abs((x[last] - X[last]) / std::sin(b * X[last])));
     if (before * now.momentum[0] < 0)
       turns.push_back(now.time - now.time_step * now.momentum[0] / (now.momentum[0] - before));
     before = now.momentum[0];

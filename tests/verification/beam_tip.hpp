@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "support/larger.hpp"
+
 namespace mpm::test {
 
 struct BeamEnd {
@@ -16,9 +18,9 @@ struct BeamEnd {
 /// From the places X at the start and x now, [particle][2], of a beam that began along x and ended at X = length.
 inline BeamEnd end_of_beam(const std::vector<double>& X, const std::vector<double>& x, double length) {
   double last = 0, next = 0;
-  for (std::size_t p = 0; p < X.size(); p += 2) last = std::max(last, X[p]);
+  for (std::size_t p = 0; p < X.size(); p += 2) last = larger(last, X[p]);
   for (std::size_t p = 0; p < X.size(); p += 2)
-    if (X[p] < last - 1e-9) next = std::max(next, X[p]);
+    if (X[p] < last - 1e-9) next = larger(next, X[p]);
   double sum[2][2] = {}, count[2] = {};
   for (std::size_t p = 0; p < X.size(); p += 2) {
     const int column = X[p] > last - 1e-9 ? 0 : X[p] > next - 1e-9 ? 1 : 2;

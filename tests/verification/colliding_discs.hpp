@@ -51,7 +51,7 @@ inline Collision collide(const std::vector<std::string>& settings) {
     now = scene.metrics.measure();
     if (found.first == 0 && now.strain > 1e-6 * start.kinetic) found.first = now.time;
     if (found.clear == 0 && now.strain > 1e-2 * start.kinetic) found.clear = now.time;
-    found.largest = std::max(found.largest, now.total_energy() / start.total_energy());
+    found.largest = larger(found.largest, now.total_energy() / start.total_energy());
   }
   found.kept = now.total_energy() / start.total_energy(), found.kinetic = now.kinetic / start.kinetic;
   found.drift = std::hypot(now.momentum[0], now.momentum[1]);

@@ -152,10 +152,10 @@ TEST_CASE("a rigid corner keeps the balance of momentum and gains no energy", "[
         double given = 0;
         for (const Reaction& reaction : now.reactions()) given += reaction.impulse[1];
         const Reaction& corner = now.reactions()[static_cast<std::size_t>(scene.experiment.support_of_rigid_body(0))];
-        impulse = std::max(impulse, std::abs(corner.impulse[1]));
-        most_force = std::max(most_force, std::abs(corner.force[1]));
-        missing = std::max(missing, std::abs(totals.momentum[1] - given));
-        most_energy = std::max(most_energy, totals.total_energy());
+        impulse = larger(impulse, std::abs(corner.impulse[1]));
+        most_force = larger(most_force, std::abs(corner.force[1]));
+        missing = larger(missing, std::abs(totals.momentum[1] - given));
+        most_energy = larger(most_energy, totals.total_energy());
       };
       const Totals end = scene.run(each);
       REQUIRE(scene.failure == "");

@@ -30,7 +30,7 @@ double largest_difference_of_upper_half(const BodyState& full, const BodyState& 
   for (std::size_t p = 0; p < full.position.size(); p += 2) {
     if (full.position[p + 1] < 0) continue;
     REQUIRE(k < half.position.size());
-    for (std::size_t c = 0; c < 2; ++c) error = std::max(error, std::abs(full.velocity[p + c] - half.velocity[k + c]));
+    for (std::size_t c = 0; c < 2; ++c) error = larger(error, std::abs(full.velocity[p + c] - half.velocity[k + c]));
     k += 2;
   }
   REQUIRE(k == half.position.size());

@@ -57,14 +57,14 @@ std::pair<double, int> gap(const BodyState& start, const BodyState& end, int D) 
   const std::vector<double> before = corner_places(start, D), after = corner_places(end, D);
   const auto distance = [&](const std::vector<double>& places, std::size_t i, std::size_t j) {
     double largest = 0;
-    for (int a = 0; a < D; ++a) largest = std::max(largest, std::abs(places[i * D + a] - places[j * D + a]));
+    for (int a = 0; a < D; ++a) largest = larger(largest, std::abs(places[i * D + a] - places[j * D + a]));
     return largest;
   };
   double widest = 0;
   int pairs = 0;
   for (std::size_t i = 0; i < before.size() / D; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (distance(before, i, j) < 1e-9) widest = std::max(widest, distance(after, i, j)), ++pairs;
+      if (distance(before, i, j) < 1e-9) widest = larger(widest, distance(after, i, j)), ++pairs;
   return {widest, pairs};
 }
 

@@ -36,8 +36,8 @@ std::string falling_block(const std::string& detection, double place) {
 double gap_of(const Scene& scene) {
   double top = -1, bottom = 99;
   const BodyState below = scene.body(0), above = scene.body(1);
-  for (std::size_t i = 1; i < below.position.size(); i += 2) top = std::max(top, below.position[i] / h);
-  for (std::size_t i = 1; i < above.position.size(); i += 2) bottom = std::min(bottom, above.position[i] / h);
+  for (std::size_t i = 1; i < below.position.size(); i += 2) top = larger(top, below.position[i] / h);
+  for (std::size_t i = 1; i < above.position.size(); i += 2) bottom = smaller(bottom, above.position[i] / h);
   return bottom - top - 2 * half_row;
 }
 

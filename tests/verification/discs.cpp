@@ -85,8 +85,8 @@ TEST_CASE("two discs: collision conserves momentum and symmetry and never gains 
         scene.simulation.step();
         if (scene.simulation.steps() % 50 != 0) continue;
         now = scene.metrics.measure();
-        largest = std::max(largest, now.total_energy());
-        nearest = std::min(nearest, approach_of(scene).distance);
+        largest = larger(largest, now.total_energy());
+        nearest = smaller(nearest, approach_of(scene).distance);
       }
       CHECK(largest <= 1.01 * start.total_energy());
       CHECK(std::hypot(now.momentum[0], now.momentum[1]) < 1e-10 * start.mass * 0.14);

@@ -89,11 +89,11 @@ Energies energies_of(Scene& scene, const std::string& update) {
   for (std::size_t k = 1; k <= totals.size(); ++k) {
     const double total = totals[k - 1];
     found.last = total / totals.front();
-    found.largest = std::max(found.largest, found.last);
+    found.largest = larger(found.largest, found.last);
     mean += total / steps_a_period;
     if (k % steps_a_period != 0) continue;
     const double rise = before > 0 ? mean / before - 1 : -1;
-    found.lasting_rise = std::max(found.lasting_rise, std::min(rise, rise_before));
+    found.lasting_rise = larger(found.lasting_rise, std::min(rise, rise_before));
     rise_before = rise;
     before = std::exchange(mean, 0);
   }

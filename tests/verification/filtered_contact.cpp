@@ -36,7 +36,7 @@ double largest_difference(const Scene& a, const Scene& b) {
   for (int body = 0; body < static_cast<int>(a.experiment.bodies.size()); ++body) {
     const BodyState s = a.body(body), t = b.body(body);
     for (std::size_t k = 0; k < s.velocity.size(); ++k)
-      largest = std::max(largest, std::abs(s.velocity[k] - t.velocity[k]));
+      largest = larger(largest, std::abs(s.velocity[k] - t.velocity[k]));
   }
   return largest;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/files.hpp"
+#include "support/larger.hpp"
 #include "support/scene.hpp"
 
 namespace mpm::test::filtered_impact {
@@ -37,7 +38,7 @@ inline Energies collide(const std::vector<std::string>& settings) {
   Energies found{0, 0};
   while (!scene.simulation.finished()) {
     found.last = scene.run_steps(5).total_energy() / first;
-    found.largest = std::max(found.largest, found.last);
+    found.largest = larger(found.largest, found.last);
   }
   return found;
 }
@@ -50,7 +51,7 @@ inline double gain_of_discs(int order, std::vector<std::string> settings) {
   Scene scene(mpm::support::read_file(MPM_SOURCE_DIR "/experiments/studies/impacting_discs.json"), settings);
   const double first = scene.metrics.initial().total_energy();
   double largest = first;
-  while (!scene.simulation.finished()) largest = std::max(largest, scene.run_steps(1).total_energy());
+  while (!scene.simulation.finished()) largest = larger(largest, scene.run_steps(1).total_energy());
   return 100 * (largest / first - 1);
 }
 

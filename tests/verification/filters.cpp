@@ -161,7 +161,7 @@ TEST_CASE("a field that moves with its walls is no business of a filter", "[filt
           const BodyState state = scene.body();
           double error = 0;
           for (std::size_t k = 0; k < state.velocity.size(); ++k)
-            error = std::max(error, std::abs(state.velocity[k] - (k % 2 ? -3 : 2)));
+            error = larger(error, std::abs(state.velocity[k] - (k % 2 ? -3 : 2)));
           CHECK(error < 1e-13 * 3 * 10);
           CHECK(std::abs(end.smallest_volume_ratio - 1) < 1e-13);
           CHECK(scene.simulation.backend().filter_record().last_norm <
@@ -354,7 +354,7 @@ TEST_CASE("the ledger of a stressed body that is filtered at fixed times closes 
             residuals.push_back(0);  // the run's largest: at single times it passes through zero
             while (!scene.simulation.finished()) {
               const Totals now = scene.run_steps(1);
-              strain = std::max(strain, now.strain);
+              strain = larger(strain, now.strain);
               residuals.back() = std::max(residuals.back(), std::abs(scene.metrics.ledger_residual(now)));
             }
             const double filtered = scene.simulation.backend().ledger().filter;

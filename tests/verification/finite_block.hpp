@@ -90,7 +90,7 @@ inline Rocking rock(const std::vector<std::string>& finer) {
     const double time = scene.simulation.time(), dt = scene.simulation.last_time_step();
     if (time < 0.15 || (time > 0.25 && time < 0.3)) continue;
     Pressed& third = time < 0.25 ? found.early : found.late;
-    third.least = std::min(third.least, -force[1]), third.most = std::max(third.most, -force[1]);
+    third.least = smaller(third.least, -force[1]), third.most = larger(third.most, -force[1]);
     third.pressing -= force[1] * dt, third.rubbing += force[0] * dt;
   }
   return found;

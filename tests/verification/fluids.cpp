@@ -153,7 +153,7 @@ double largest_error(const Scene& scene, double time) {
   const BodyState end = scene.body();
   double error = 0;
   for (std::size_t p = 0; p < end.velocity.size() / 2; ++p)
-    error = std::max(error, std::abs(end.velocity[2 * p] / 0.1 - couette(end.position[2 * p + 1], time)));
+    error = larger(error, std::abs(end.velocity[2 * p] / 0.1 - couette(end.position[2 * p + 1], time)));
   return error;
 }
 

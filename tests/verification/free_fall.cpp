@@ -96,8 +96,8 @@ TEST_CASE("filtered particles that move by their mean velocity follow the parabo
               REQUIRE(start.size() > 40);
               double worst = 0;
               for (std::size_t k = 0; k < start.size(); k += 2) {
-                worst = std::max(worst, std::abs(end[k] - start[k] - 8 * t));
-                worst = std::max(worst, std::abs(end[k + 1] - start[k + 1] - 2 * t - 0.5 * g * t * t - extra));
+                worst = larger(worst, std::abs(end[k] - start[k] - 8 * t));
+                worst = larger(worst, std::abs(end[k + 1] - start[k + 1] - 2 * t - 0.5 * g * t * t - extra));
               }
               CHECK(worst < margin);
             }

@@ -38,7 +38,7 @@ struct Errors {
 /// The largest difference over the largest expected entry.
 double relative(const std::vector<double>& found, const std::vector<double>& expected) {
   double size = 0;
-  for (const double value : expected) size = std::max(size, std::abs(value));
+  for (const double value : expected) size = larger(size, std::abs(value));
   return largest_difference(found, expected) / size;
 }
 

@@ -245,7 +245,7 @@ TEST_CASE("bodies that begin apart meet as by friction alone, however they are p
   const BodyState a = glue.body(1), b = friction.body(1);
   double largest = 0;
   for (std::size_t k = 0; k < a.position.size(); ++k)
-    largest = std::max(largest, std::abs(a.position[k] - b.position[k]));
+    largest = larger(largest, std::abs(a.position[k] - b.position[k]));
   CHECK(largest < 1e-12);
   // It has been down and left again.
   CHECK(momentum(glue, 1, 1) > 0);

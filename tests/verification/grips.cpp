@@ -55,9 +55,9 @@ TEST_CASE("a body in one grip moves exactly as it is told", "[grips]") {
           double x = 0, y = 0, worst = 0;
           for (int k = 1; k <= 50; ++k) x += 0.01 * (0.3 + 0.01 * k), y -= 0.01 * 0.4 * 0.01 * k;
           for (std::size_t p = 0; p < state.position.size(); p += 2) {
-            worst = std::max(worst, std::abs(state.position[p] - start.position[p] - x));
-            worst = std::max(worst, std::abs(state.position[p + 1] - start.position[p + 1] - y));
-            worst = std::max(worst, std::abs(state.velocity[p] - 0.8));
+            worst = larger(worst, std::abs(state.position[p] - start.position[p] - x));
+            worst = larger(worst, std::abs(state.position[p + 1] - start.position[p + 1] - y));
+            worst = larger(worst, std::abs(state.velocity[p] - 0.8));
           }
           CHECK(worst < 1e-13);
           CHECK(std::abs(end.largest_volume_ratio - 1) < 1e-11);
@@ -83,8 +83,8 @@ TEST_CASE("a body in one grip turns exactly as it is told", "[grips]") {
       double worst = 0;
       for (std::size_t p = 0; p < state.position.size(); p += 2) {
         const double X = start.position[p] - 1, Y = start.position[p + 1] - 1, c = std::cos(angle), s = std::sin(angle);
-        worst = std::max(worst, std::abs(state.position[p] - 1 - growth * (c * X - s * Y)));
-        worst = std::max(worst, std::abs(state.position[p + 1] - 1 - growth * (s * X + c * Y)));
+        worst = larger(worst, std::abs(state.position[p] - 1 - growth * (c * X - s * Y)));
+        worst = larger(worst, std::abs(state.position[p + 1] - 1 - growth * (s * X + c * Y)));
       }
       CHECK(worst < 1e-12);
     }

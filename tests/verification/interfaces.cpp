@@ -172,7 +172,7 @@ TEST_CASE("bars on a spring keep their swing", "[interface]") {
     while (!scene.simulation.finished()) {
       scene.simulation.step();
       if (scene.simulation.time() * bars.frequency > 3.8 * 2 * std::numbers::pi)
-        fastest = std::max(fastest, velocity_along(scene, 0));
+        fastest = larger(fastest, velocity_along(scene, 0));
     }
     INFO(courant);
     CHECK(fastest == Approx(start).epsilon(0.002));
@@ -220,7 +220,7 @@ BodyState lower_plank(const std::vector<std::string>& overrides) {
 /// How far the particles at the lower plank's end have sunk, m.
 double tip_of(const BodyState& lower) {
   double tip = 0, farthest = 0;
-  for (std::size_t k = 0; k < lower.position.size(); k += 2) farthest = std::max(farthest, lower.initial_position[k]);
+  for (std::size_t k = 0; k < lower.position.size(); k += 2) farthest = larger(farthest, lower.initial_position[k]);
   int count = 0;
   for (std::size_t k = 0; k < lower.position.size(); k += 2)
     if (lower.initial_position[k] > farthest - 1e-9)

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 
+#include "support/larger.hpp"
 #include "support/scene.hpp"
 
 namespace mpm::test {
@@ -74,14 +75,14 @@ class LineScene {
   }
   double largest_speed() const {
     double largest = 0;
-    for (const double v : velocities()) largest = std::max(largest, std::abs(v));
+    for (const double v : velocities()) largest = larger(largest, std::abs(v));
     return largest;
   }
 
   /// The largest of velocity over wave speed and of strain: the shortest wave shows in strains only.
   double largest_disturbance() const {
     double largest = largest_speed();
-    for (const double strain : strains()) largest = std::max(largest, std::abs(strain));
+    for (const double strain : strains()) largest = larger(largest, std::abs(strain));
     return largest;
   }
 

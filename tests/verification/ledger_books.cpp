@@ -110,8 +110,8 @@ Largest largest(const std::vector<std::string>& overrides) {
     const double residual = std::abs(scene.metrics.ledger_residual(now)),
                  book = std::abs(scene.simulation.ledger().material_book);
     REQUIRE(std::isfinite(residual + book));
-    found.residual = std::max(found.residual, residual);
-    found.material_book = std::max(found.material_book, book);
+    found.residual = larger(found.residual, residual);
+    found.material_book = larger(found.material_book, book);
   }
   found.residual /= scene.metrics.initial().total_energy();
   found.material_book /= scene.metrics.initial().total_energy();

@@ -215,7 +215,7 @@ TEST_CASE("loads: a block on springs has its period, and the springs store what 
   while (!scene.simulation.finished()) {
     scene.simulation.step();
     const double at = middle(scene) - start;
-    deepest = std::max(deepest, -scene.simulation.ledger().spring);
+    deepest = larger(deepest, -scene.simulation.ledger().spring);
     if (before < 0 && at >= 0) {
       last = time + (scene.simulation.time() - time) * before / (before - at);
       if (crossings++ == 0) first = last;
@@ -265,7 +265,7 @@ TEST_CASE("loads: the ledger of loaded bodies closes, and its residual falls wit
       for (const double row :
            {ledger.surface_load, ledger.point_load, ledger.body_force, ledger.spring, ledger.dashpot}) {
         CHECK(row != 0);
-        largest_row = std::max(largest_row, std::abs(row));
+        largest_row = larger(largest_row, std::abs(row));
       }
       CHECK(std::abs(ledger.grid_book) < 1e-12 * largest_row);
       residuals.push_back(std::abs(scene.metrics.ledger_residual(end)) / largest_row);

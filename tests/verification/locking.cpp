@@ -93,8 +93,8 @@ TEST_CASE("rings that hardly change their volume lock with their own dilation an
     if (shape != "bspline_quadratic") CHECK(own < (cells == 4 ? -0.5 : -0.2));
     CHECK(std::abs(mean) < 0.01);
     if (shape == "bspline_quadratic" || cells != 4) return;
-    least = std::min(least, 1 + own), most = std::max(most, 1 + own);
-    least_mean = std::min(least_mean, 1 + mean), most_mean = std::max(most_mean, 1 + mean);
+    least = smaller(least, 1 + own), most = larger(most, 1 + own);
+    least_mean = smaller(least_mean, 1 + mean), most_mean = larger(most_mean, 1 + mean);
   };
   for (const std::string shape : {"linear", "gimp", "cpdi", "bspline_quadratic"})
     for (const std::string transfer : {"apic", "flip"}) compare(shape, transfer, 4);

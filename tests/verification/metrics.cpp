@@ -175,7 +175,7 @@ TEST_CASE("the largest penetration of two slabs is their overlap", "[metrics][co
         double largest = 0;
         while (!scene.simulation.finished()) {
           scene.simulation.step();
-          largest = std::max(largest, scene.simulation.backend().contact_record().largest_penetration);
+          largest = larger(largest, scene.simulation.backend().contact_record().largest_penetration);
         }
         // B2GIMP's edge is a fit: 0.4 % of a cell off where one row overlaps. Tents move by up to 2e-5 m a step.
         const double margin = shape == "b2gimp" ? 4e-4 : tents ? 6e-5 : 1e-12;

@@ -63,7 +63,7 @@ double largest_mismatch(double x, double second_moment, double multiple, const s
   double base, w[Shape::width], g[Shape::width], largest = 0;
   Shape::evaluate({}, x, base, w, g);
   for (int k = 0; k < Shape::width; ++k)
-    largest = std::max(largest, std::abs(w[k] * (base + k - x) / second_moment - g[k] - multiple * difference[k]));
+    largest = larger(largest, std::abs(w[k] * (base + k - x) / second_moment - g[k] - multiple * difference[k]));
   return largest;
 }
 
@@ -156,8 +156,8 @@ TEST_CASE("the forces of MLS do the work of the stress on every affine field, as
                              end = first_moment(scene.body(), before, shape);
         double size = 0, error = 0;
         for (int k = 0; k < 4; ++k) {
-          size = std::max(size, std::abs(1e-3 * stress.m[k]));
-          error = std::max(error, std::abs(end.m[k] - start.m[k] + 1e-3 * stress.m[k]));
+          size = larger(size, std::abs(1e-3 * stress.m[k]));
+          error = larger(error, std::abs(end.m[k] - start.m[k] + 1e-3 * stress.m[k]));
         }
         INFO(backend << " " << shape << " " << transfer << ": " << error << " of " << size);
         CHECK(size > 0.01);
@@ -207,8 +207,8 @@ Difference gradients_differ(const std::string& shape, int cells) {
     const double x = start.position[2 * p], y = start.position[2 * p + 1], h = 1.0 / cells;
     const double difference = (G[k] - F[k]) / 1e-4, expected = excess(shape, (j == 0 ? x : y) * cells) *
                                                                std::pow(h, order - 1) * derivative(i, j, order, x, y);
-    found.largest = std::max(found.largest, std::abs(difference));
-    found.unexplained = std::max(found.unexplained, std::abs(difference - expected));
+    found.largest = larger(found.largest, std::abs(difference));
+    found.unexplained = larger(found.unexplained, std::abs(difference - expected));
   }
   return found;
 }

@@ -145,7 +145,7 @@ TEST_CASE("an affine field comes back exactly", "[round_trip]") {
         CHECK(change < seeded * 0.2);
         const std::vector<double>& L = after.transfer_state.begin()->second;
         double error = 0;
-        for (std::size_t k = 0; k < L.size(); ++k) error = std::max(error, std::abs(L[k] - gradient[k % 4]));
+        for (std::size_t k = 0; k < L.size(); ++k) error = larger(error, std::abs(L[k] - gradient[k % 4]));
         CHECK(error < 4 * seeded);
         // Nothing was lost on the way, with the affine part's energy m/2 tr(C D C^T) counted.
         const Ledger& ledger = scene.simulation.backend().ledger();
@@ -167,7 +167,7 @@ TEST_CASE("the domain of a CPDI particle follows the velocity gradient", "[cpdi]
       double error = 0;
       for (std::size_t k = 0; k < domain.size(); ++k) {
         const double identity = k % 4 == 0 || k % 4 == 3 ? 1 : 0;
-        error = std::max(error, std::abs(domain[k] - side * (identity + dt * gradient[k % 4])));
+        error = larger(error, std::abs(domain[k] - side * (identity + dt * gradient[k % 4])));
       }
       CHECK(error < 1e-13 * side);
     }
@@ -262,8 +262,8 @@ TEST_CASE("a slip wall is the plane of symmetry of a whole body, also where it i
           if (a.position[p] < 0) continue;
           REQUIRE(k < b.position.size());
           for (int c = 0; c < 2; ++c) {
-            error = std::max(error, std::abs(a.position[p + c] - b.position[k + c]));
-            error = std::max(error, std::abs(a.velocity[p + c] - b.velocity[k + c]));
+            error = larger(error, std::abs(a.position[p + c] - b.position[k + c]));
+            error = larger(error, std::abs(a.velocity[p + c] - b.velocity[k + c]));
           }
           k += 2;
         }

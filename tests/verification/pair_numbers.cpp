@@ -108,7 +108,7 @@ TEST_CASE("the parts of a pair's force are the weight that presses and friction"
         const double size =
             std::hypot(now.at("pair bed block tangential force x"), now.at("pair bed block tangential force y"));
         normal += now.at("pair bed block normal force"), along += size;
-        ratio = std::max(ratio, std::abs(size / now.at("pair bed block normal force") - friction));
+        ratio = larger(ratio, std::abs(size / now.at("pair bed block normal force") - friction));
       }
       return std::array{normal / steps, along / steps, ratio};
     };
@@ -139,7 +139,7 @@ TEST_CASE("the tractions on a block's face have the weight that presses, and fri
     };
     const std::size_t count = begin.position.size() / 2;
     for (std::size_t p = 0; p < count; ++p) {
-      lowest = std::min(lowest, along(begin, p, up)), first = std::min(first, along(begin, p, down_slope));
+      lowest = smaller(lowest, along(begin, p, up)), first = smaller(first, along(begin, p, down_slope));
     }
     for (std::size_t p = 0; p < count; ++p) {
       const double place = along(begin, p, down_slope) - first;

@@ -56,12 +56,12 @@ Balance balance(const std::string& text, const std::vector<std::string>& overrid
       double given = scene.experiment.gravity[c] * now.mass;
       for (const Reaction& reaction : scene.simulation.backend().reactions()) {
         given += reaction.force[c];
-        result.size = std::max(result.size, std::abs(reaction.force[c]) * now.time_step);
+        result.size = larger(result.size, std::abs(reaction.force[c]) * now.time_step);
       }
-      result.missing = std::max(result.missing, std::abs(now.momentum[c] - before[c] - given * now.time_step));
+      result.missing = larger(result.missing, std::abs(now.momentum[c] - before[c] - given * now.time_step));
     }
     before = now.momentum;
-    result.scale = std::max(result.scale, now.momentum_scale);
+    result.scale = larger(result.scale, now.momentum_scale);
   }
   return result;
 }
@@ -125,7 +125,7 @@ TEST_CASE("momentum changes by what supports and gravity give", "[reactions]") {
             const Balance found = balance(mix.text(), {set("/backend", backend), set("/solver/end_time", "0.054")});
             CHECK(found.size > 0.1);
             CHECK(found.missing < 2e-14 * found.scale);
-            worst = std::max(worst, found.missing / found.scale);
+            worst = larger(worst, found.missing / found.scale);
             ++tried;
           }
   INFO("largest " << worst << " of the momentum, in " << tried << " runs");
@@ -205,8 +205,8 @@ TEST_CASE("angular momentum changes by the moments of supports and gravity", "[r
             const Vector3 now = spin(scene);
             for (std::size_t c = 0; c < 3; ++c) {
               for (const Reaction& reaction : scene.simulation.backend().reactions()) given[c] += reaction.moment[c];
-              missing = std::max(missing, std::abs(now[c] - before[c] - given[c] * dt));
-              size = std::max(size, std::abs(given[c] * dt));
+              missing = larger(missing, std::abs(now[c] - before[c] - given[c] * dt));
+              size = larger(size, std::abs(given[c] * dt));
             }
             before = now;
           }

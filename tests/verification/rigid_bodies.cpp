@@ -183,7 +183,7 @@ TEST_CASE("a flat rigid face gives way by a share of a cell's strain, by its pla
     const double shares[2] = {foot / (cell * slope), (head + down) / (cell * -slope)};
     std::printf("  plates %.3f cells above a node: the lower gives way by %.4f cells, the upper by %.4f\n", place / 8.0,
                 shares[0], shares[1]);
-    for (const double share : shares) least = std::min(least, share), most = std::max(most, share), mean += share / 16;
+    for (const double share : shares) least = smaller(least, share), most = larger(most, share), mean += share / 16;
   }
   for (const auto& printed : {Page("docs/contact.md")
                                   .read("a flat face gives way by # to # of a cell's strain, by "
@@ -294,8 +294,8 @@ TEST_CASE("momentum changes by what rigid bodies and gravity give", "[rigid]") {
               for (std::size_t c = 0; c < 2; ++c) {
                 const double force =
                     scene.experiment.gravity[c] * now.mass - felt(scene, 0).force[c] - felt(scene, 1).force[c];
-                missing = std::max(missing, std::abs(now.momentum[c] - before[c] - force * now.time_step));
-                size = std::max(size, std::abs(felt(scene, 0).force[c] * now.time_step));
+                missing = larger(missing, std::abs(now.momentum[c] - before[c] - force * now.time_step));
+                size = larger(size, std::abs(felt(scene, 0).force[c] * now.time_step));
               }
               before = now.momentum;
             }

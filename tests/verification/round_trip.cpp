@@ -39,8 +39,7 @@ double largest_change(const BodyState& before, const BodyState& after, double in
   for (std::size_t k = 0; k < before.velocity.size(); k += 2) {
     const double x = before.position[k], y = before.position[k + 1];
     if (std::min({x - 1, 2 - x, y - 1, 2 - y}) < inside) continue;
-    for (std::size_t c = k; c < k + 2; ++c)
-      largest = std::max(largest, std::abs(after.velocity[c] - before.velocity[c]));
+    for (std::size_t c = k; c < k + 2; ++c) largest = larger(largest, std::abs(after.velocity[c] - before.velocity[c]));
   }
   return largest;
 }
@@ -55,10 +54,10 @@ Visit visit(const std::string& text, const std::vector<std::string>& overrides, 
   const std::array before{scene.body(0), scene.body(1)};
   const Totals start = scene.metrics.initial(), end = scene.run_steps(1);
   Visit v;
-  for (int b = 0; b < 2; ++b) v.change = std::max(v.change, largest_change(before[b], scene.body(b), inside));
+  for (int b = 0; b < 2; ++b) v.change = larger(v.change, largest_change(before[b], scene.body(b), inside));
   v.spin = end.angular_momentum[2] / start.angular_momentum[2] - 1;
   for (int c = 0; c < 2; ++c)
-    v.momentum = std::max(v.momentum, std::abs(end.momentum[c] - start.momentum[c]) / start.mass);
+    v.momentum = larger(v.momentum, std::abs(end.momentum[c] - start.momentum[c]) / start.mass);
   return v;
 }
 
@@ -114,10 +113,10 @@ TEST_CASE("round trip: particles that carry an affine field itself get it back, 
         double of_velocity = 0, of_gradient = 0;
         for (int b = 0; b < 2; ++b) {
           const BodyState after = simulation.backend().body_state(b);
-          of_velocity = std::max(of_velocity, largest_difference(before[b].velocity, after.velocity));
+          of_velocity = larger(of_velocity, largest_difference(before[b].velocity, after.velocity));
           REQUIRE(after.transfer_state.size() == 1);
-          of_gradient = std::max(of_gradient, largest_difference(before[b].transfer_state.begin()->second,
-                                                                 after.transfer_state.begin()->second));
+          of_gradient = larger(of_gradient, largest_difference(before[b].transfer_state.begin()->second,
+                                                               after.transfer_state.begin()->second));
         }
         std::printf("  %-9s %-17s %-5s %8.1e %8.1e\n", backend.c_str(), shape.c_str(), transfer.c_str(), of_velocity,
                     of_gradient);

@@ -168,7 +168,7 @@ inline void add_step(const Solid& before, const Solid& after, double cell, doubl
   const Nodes nodes(x, cell);
   const Vectors force = nodes.force(before.stress, before.volume_over_mass);
   const double lumping = dt * moment(nodes.centre, force) / whole;
-  sum.torque = std::max(sum.torque, std::abs(dt * moment(nodes.place, force) / whole));
+  sum.torque = larger(sum.torque, std::abs(dt * moment(nodes.place, force) / whole));
 
   Vectors moved = after.position;
   for (std::size_t p = 0; p < x.size(); ++p)
@@ -181,7 +181,7 @@ inline void add_step(const Solid& before, const Solid& after, double cell, doubl
 
   const double change = (after.spin() - before.spin()) / whole;
   sum.lumping += lumping, sum.motion += motion, sum.filter += filter, sum.change += change;
-  sum.gap = std::max(sum.gap, std::abs(change - lumping - motion - filter));
+  sum.gap = larger(sum.gap, std::abs(change - lumping - motion - filter));
 }
 
 /// Runs the scene to its end.

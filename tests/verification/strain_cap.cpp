@@ -32,7 +32,7 @@ TEST_CASE("a strain cap bounds the first change of velocity in an impact, and ke
       while (slowest > 1 - 1e-9) {
         simulation.step();
         const std::vector<double> velocity = scene.body(0).velocity;
-        for (std::size_t p = 0; p < velocity.size(); p += 2) slowest = std::min(slowest, velocity[p]);
+        for (std::size_t p = 0; p < velocity.size(); p += 2) slowest = smaller(slowest, velocity[p]);
       }
       // The block bears no force yet. Contact acts on v- and on v+, and particles at the face take nearly what nodes do: of
       // FLIP's the change from v- to v+.

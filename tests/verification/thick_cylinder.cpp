@@ -73,7 +73,7 @@ double front(const BodyState& state) {
   const auto& plastic = state.material_state.at("equivalent_plastic_strain");
   double c = 0;
   for (std::size_t p = 0; p < plastic.size(); ++p)
-    if (plastic[p] > 0) c = std::max(c, state.position[2 * p]);
+    if (plastic[p] > 0) c = larger(c, state.position[2 * p]);
   return c;
 }
 

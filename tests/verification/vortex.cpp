@@ -133,7 +133,7 @@ TEST_CASE("vortex: the shears that the page tells are those of the motion", "[vo
       for (const auto& [sx, sy] : {std::pair{1, 0}, std::pair{0, 1}})
         for (int c = 0; c < 2; ++c)
           sum += std::pow((place(R + sx * d, sy * d, t)[c] - place(R - sx * d, -sy * d, t)[c]) / (2 * d), 2);
-      largest = std::max(largest, std::sqrt(sum));
+      largest = larger(largest, std::sqrt(sum));
     }
     return largest;
   };

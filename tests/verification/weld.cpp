@@ -37,7 +37,7 @@ double largest_difference(const Scene& a, const Scene& b) {
   for (int body = 0; body < 2; ++body) {
     const BodyState s = a.body(body), t = b.body(body);
     largest =
-        std::max({largest, largest_difference(s.velocity, t.velocity), largest_difference(s.position, t.position)});
+        larger(largest, larger(largest_difference(s.velocity, t.velocity), largest_difference(s.position, t.position)));
   }
   return largest;
 }
@@ -100,7 +100,7 @@ TEST_CASE("a weld on every increment is transparent to filters, a weld at the en
           CHECK(late < 1e-14);
         else
           CHECK(late > 1e-5);  // the difference is ten orders above
-        if (!whole) least = std::min(least, late), most = std::max(most, late);
+        if (!whole) least = smaller(least, late), most = larger(most, late);
         step_all(20);
         exact = largest_difference(*always, *one), late = largest_difference(*at_end, *one);
         INFO("after 20 more: every increment " << exact << ", at the end " << late);

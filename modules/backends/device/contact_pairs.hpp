@@ -91,11 +91,10 @@ class ContactPairs {
   void show_particles(const std::vector<Body<T>>& bodies) {
     for (const Body<T>& body : bodies) {
       const bool by_domain = body.number("domain") >= 0;
-      const bool by_deformation = body.number("deformation") >= 0 && points_.sees_surfaces();
       const std::vector<T> position = body.arrays.read("position"), size = body.arrays.read("size"),
-                           sides = by_domain        ? body.arrays.read("domain")
-                                   : by_deformation ? body.arrays.read("deformation")
-                                                    : std::vector<T>();
+                           sides = by_domain                 ? body.arrays.read("domain")
+                                   : points_.sees_surfaces() ? body.arrays.read("deformation")
+                                                             : std::vector<T>();
       const auto n = static_cast<std::size_t>(body.count);
       for (std::size_t p = 0; p < n; ++p) {
         Vector3 x = body.vector(position, p);

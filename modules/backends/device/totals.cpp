@@ -26,7 +26,7 @@ std::optional<Totals> DeviceBackend<T>::totals_of(int index) const {
   const double *const motion = found.data(), *const state = motion + states, *const heat = motion + heats;
   Totals totals;
   totals.mass = motion[motion_mass], totals.kinetic = motion[motion_kinetic];
-  for (int c = 0; c < 3; ++c) {
+  for (int c = 0; c < static_cast<int>(totals.momentum.size()); ++c) {
     totals.momentum[c] = motion[motion_momentum + c];
     totals.angular_momentum[c] = motion[motion_angular_momentum + c];
     totals.centre_of_mass[c] = motion[motion_place + c];
