@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "backends/device/kernels/sums.hpp"  // largest_team
-#include "backends/device/memory.hpp"
 #include "backends/libraries/backend_library.hpp"
 #include "experiment/contact_settings.hpp"
 #include "experiment/device_settings.hpp"

@@ -18,6 +18,7 @@
 #include "backends/device/formula_numbers.hpp"
 #include "backends/device/heat_conditions.hpp"
 #include "backends/device/make_device_backend.hpp"
+#include "backends/device/memory.hpp"
 #include "backends/device/results.hpp"
 #include "backends/device/rigid_nodes.hpp"
 #include "backends/device/step_graphs.hpp"
@@ -313,7 +314,6 @@ class DeviceBackend final : public Backend, public OffersTotals {
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_,
       normal_parameters_, detection_parameters_;
   DeviceArray<double> partial_sums_;
-  static constexpr int count_of_totals = 24;
   DeviceArray<double> totals_;  ///< of one body (kernels/totals_list.hpp)
   bool deterministic_;          ///< particles are summed to the same bits in any order of lanes
   DeviceArray<int> exponents_;  ///< see kernels/exact_sums.hpp

@@ -4,6 +4,7 @@
 
 #include "backends/device/compose.hpp"
 #include "backends/device/fields.hpp"
+#include "backends/device/particle_formulas.hpp"
 #include "backends/device/results.hpp"
 #include "backends/device/sorting.hpp"
 #include "experiment/device_settings.hpp"
@@ -13,10 +14,14 @@
 namespace mpm::device {
 namespace {
 
+double bytes_of_scalar(const Experiment& experiment) {
+  return experiment.precision == Precision::single ? sizeof(float) : sizeof(double);
+}
+
 /// What grows with each particle and each node.
 std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan& plan,
                                        const std::vector<std::size_t>& particles, std::size_t nodes) {
-  const double scalar = experiment.precision == Precision::single ? sizeof(float) : sizeof(double);
+  const double scalar = bytes_of_scalar(experiment);
   std::vector<TakenMemory> all;
   const auto add = [&](const std::vector<Field>& fields, int body, double count) {
     for (const Field& field : fields)
@@ -32,23 +37,15 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
   const double all_nodes = static_cast<double>(nodes) * experiment.field_count;
   add(node_fields(experiment, plan), TakenMemory::of_nodes, all_nodes);
   all.push_back({"folded", TakenMemory::of_nodes, 1, all_nodes * sizeof(int), true});
-  if (ContactPoints(experiment).needed()) {
-    const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
-    all.push_back({"contact", TakenMemory::of_nodes, 2 + experiment.dimension,
-                   static_cast<double>(nodes) * pairs * ((2 + experiment.dimension) * scalar + sizeof(int)), true});
-  }
-  if (experiment.measures_traction()) {
-    const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
-    const int numbers = experiment.dimension + 1;
-    all.push_back(
-        {"welds", TakenMemory::of_nodes, numbers, static_cast<double>(nodes) * pairs * numbers * sizeof(double), true});
-  }
-  if (records_nodes(experiment)) {
-    const double pairs = 0.5 * experiment.field_count * (experiment.field_count - 1);
-    const int numbers = 2 + 2 * experiment.dimension;
-    all.push_back({"contact nodes", TakenMemory::of_nodes, numbers,
-                   static_cast<double>(nodes) * pairs * (numbers * scalar + sizeof(int)), true});
-  }
+  const double all_pairs = all_nodes * (experiment.field_count - 1) / 2;
+  const auto add_to_pairs = [&](const char* what, int numbers, double bytes) {
+    all.push_back({what, TakenMemory::of_nodes, numbers, all_pairs * bytes, true});
+  };
+  const int of_contact = 2 + experiment.dimension, of_weld = 1 + experiment.dimension,
+            of_note = 2 + 2 * experiment.dimension;
+  if (ContactPoints(experiment).needed()) add_to_pairs("contact", of_contact, of_contact * scalar + sizeof(int));
+  if (experiment.measures_traction()) add_to_pairs("welds", of_weld, of_weld * sizeof(double));
+  if (records_nodes(experiment)) add_to_pairs("contact nodes", of_note, of_note * scalar + sizeof(int));
   if (sums_deterministically(experiment)) {
     const int channels = most_channels(choice_of(experiment, plan));
     all.push_back({"exact sums", TakenMemory::of_nodes, 2 * channels,
@@ -75,7 +72,10 @@ std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& 
   }
   const std::size_t runs = (size.nodes + nodes_of_run - 1) / nodes_of_run;
   all.push_back({"active", TakenMemory::of_nodes, 1, static_cast<double>(runs) * experiment.field_count, true});
-  const std::size_t sums = room_for_sums(size) + Results::numbers;
+  const ParticleFormulas formulas(experiment);
+  all.push_back({"formula numbers", TakenMemory::of_run, 1,
+                 static_cast<double>(formulas.count()) * bytes_of_scalar(experiment), true});
+  const std::size_t sums = room_for_sums(size) + Results::numbers + count_of_totals;
   all.push_back({"sums", TakenMemory::of_run, 1, static_cast<double>(sums) * sizeof(double), true});
   return all;
 }

@@ -2,6 +2,7 @@
 // The memory that a run takes on a device, by the list of its fields.
 
 #include "backends/device/device.hpp"
+#include "backends/device/kernels/totals_list.hpp"
 #include "simulation/backend.hpp"
 
 namespace mpm::device {
@@ -17,6 +18,9 @@ struct TakenMemory {
   static constexpr int of_nodes = -1, of_run = -2;
 };
 
+/// The sums over one body of which its totals are made.
+inline constexpr int count_of_totals = int{motion_sums} + state_sums + heat_sums;
+
 /// How large a scene is on a device.
 struct SceneSize {
   std::vector<std::size_t> particles;  ///< of each body
@@ -28,8 +32,9 @@ struct SceneSize {
 /// What one particle of each body and one node of the grid take, for all velocity fields.
 std::vector<TakenMemory> taken_by_one(const Experiment& experiment, const Plan& plan);
 
-/// All that grows with the particles, the nodes and the blocks of a scene, for all velocity fields. Beside it there are
-/// tables of a fixed length: parameters, edges of bodies, and what walls and boxes give.
+/// All that grows with the particles, the nodes and the blocks of a scene, for all velocity fields, and what a run sums.
+/// Beside it there are tables of a fixed length, as of parameters, the edges of bodies and what walls and boxes give, and
+/// the nodes near rigid bodies.
 std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& plan, const SceneSize& size);
 
 /// How many partial sums there is room for: all that teams of so many lanes make of the particles of the largest body, or

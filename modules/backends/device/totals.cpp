@@ -18,7 +18,6 @@ std::optional<Totals> DeviceBackend<T>::totals_of(int index) const {
   const Body<T>& body = bodies_[static_cast<std::size_t>(index)];
   if (body.count == 0) return std::nullopt;
   constexpr int states = motion_sums, heats = states + state_sums;
-  static_assert(heats + heat_sums == count_of_totals);
   sum_particles("totals_of_motion", body, motion_sums, 1, 0);
   sum_particles("totals_of_state_" + std::to_string(body.material_number), body, state_sums, 2, states);
   if (experiment_.has_temperature()) sum_particles("totals_of_heat", body, heat_sums, 2, heats);
