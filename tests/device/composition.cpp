@@ -75,17 +75,23 @@ TEST_CASE("a functor that includes what a device cannot see is refused with its 
     const OddShape odd("#pragma once\n#include \"kernel/functor.hpp\"\n#include <vector>\n");
     choice.shape = &odd.plugin;
     CHECK_THROWS_WITH(device::compose(choice),
-                      ContainsSubstring("shape plugin bspline_quadratic, line 3 includes <vector>"));
+                      "shape plugin bspline_quadratic, line 3 includes <vector>, which a device cannot see; a functor "
+                      "includes \"kernel/...\" headers only, and others inside #if MPM_HOST");
   }
   SECTION("a header that is not there") {
     const OddShape odd("#include \"kernel/nothing.hpp\"\n");
     choice.shape = &odd.plugin;
-    CHECK_THROWS_WITH(device::compose(choice), ContainsSubstring("\"kernel/nothing.hpp\""));
+    CHECK_THROWS_WITH(
+        device::compose(choice),
+        "shape plugin bspline_quadratic, line 1 includes \"kernel/nothing.hpp\", which a device cannot see; "
+        "include headers of modules/kernel only");
   }
   SECTION("no text at all") {
     const OddShape odd("");
     choice.shape = &odd.plugin;
-    CHECK_THROWS_WITH(device::compose(choice), ContainsSubstring("mpm_add_plugin"));
+    CHECK_THROWS_WITH(device::compose(choice),
+                      "shape plugin bspline_quadratic carries no text of its functor; build it "
+                      "with mpm_add_plugin(... HEADER file)");
   }
   SECTION("but what only the host sees may stay") {
     const std::string text = "#if MPM_HOST\n#include <vector>\n#endif\n" +
@@ -94,6 +100,82 @@ TEST_CASE("a functor that includes what a device cannot see is refused with its 
     choice.shape = &odd.plugin;
     CHECK_NOTHROW(device::HostCompiler{}.compile(device::compose(choice)));
   }
+}
+
+TEST_CASE("includes are looked for where a device looks, in groups within groups", "[device]") {
+  device::Choice choice = usual_choice();
+  const auto line_refused = [&](const char* source) {
+    const OddShape odd(source);
+    choice.shape = &odd.plugin;
+    try {
+      device::compose(choice);
+    } catch (const device::ComposeError& error) {
+      const std::string message = error.what(), start = "shape plugin bspline_quadratic, line ";
+      REQUIRE(message.rfind(start, 0) == 0);
+      return std::stoi(message.substr(start.size()));
+    }
+    return 0;
+  };
+  const std::string in_host = "#if MPM_HOST\n#include <a>\n";
+  for (const auto& [source, line] : std::vector<std::pair<std::string, int>>{
+           {"#include <b>\n", 1},
+           {"  #  include <b>\n", 1},
+           {"#include \"\n", 1},
+           {"#include \"plugin/abi.h\"\n", 1},
+           {"#if 1\n#include <b>\n#endif\n", 2},
+           {"// include b\n# define ODD 1\nint odd = 1; // as #if MPM_HOST\n", 0},
+           {in_host + "#endif\n", 0},
+           {in_host + "\n#endif\n#include <b>\n", 5},
+           {in_host + "#else\n#include <b>\n#endif\n", 4},
+           {in_host + "#elif 1\n#include <b>\n#endif\n", 4},
+           {in_host + "#if 1\n#include <a>\n#else\n#include <a>\n#endif\n#include <a>\n#endif\n", 0},
+           {in_host + "  #if 1\n#endif\n#include <a>\n#endif\n#include <b>\n", 7},
+           {"#if 1\n  #if MPM_HOST\n#include <a>\n#endif\n#include <b>\n#endif\n", 5}}) {
+    INFO(source);
+    CHECK(line_refused(source.c_str()) == line);
+  }
+}
+
+TEST_CASE("a choice is named by its plugins in order, each with its file once", "[device]") {
+  device::Choice choice = usual_choice();
+  choice.axisymmetric = true, choice.precision = Precision::single, choice.basis_order = 2;
+  choice.contact = plugins().find(MPM_CONTACT, "stick");
+  choice.rigid_laws = {choice.contact, plugins().find(MPM_CONTACT, "coulomb")};
+  CHECK(choice.name() ==
+        "2-D axisymmetric float: bspline_quadratic apic stick stick coulomb neo_hookean, polynomials of order 2");
+  std::vector<std::string> names;
+  for (const auto& [name, file] : device::compose(choice).plugins) names.push_back(name);
+  CHECK(names == std::vector<std::string>{"shape plugin bspline_quadratic", "transfer plugin apic",
+                                          "contact plugin stick", "contact plugin coulomb",
+                                          "material plugin neo_hookean"});
+  Mix full;
+  full.transfer = R"({"type": "polypic", "basis": "full"})";  // of stencils of three nodes: squares along each axis
+  CHECK(device_choice_of(device_experiment(full.text(), "double")).name() ==
+        "2-D double: bspline_quadratic polypic neo_hookean, polynomials of order 2");
+}
+
+TEST_CASE("each trait of a transfer that reads the affine moment makes kernels find it", "[device]") {
+  device::Choice choice = usual_choice();
+  Plugin transfer = *choice.transfer;
+  mpm_descriptor descriptor = *transfer.descriptor;
+  mpm_transfer table = transfer.transfer();
+  transfer.descriptor = &descriptor, descriptor.kind_table = &table, choice.transfer = &transfer;
+  for (const auto& [traits, affine] : {std::pair{0u, "false"},
+                                       {unsigned(MPM_SCATTERS_AFFINE | MPM_GATHERS_GRADIENT), "false"},
+                                       {unsigned(MPM_GATHERS_AFFINE), "true"},
+                                       {unsigned(MPM_STRESS_BY_AFFINE), "true"},
+                                       {unsigned(MPM_STRAIN_BY_AFFINE), "true"}}) {
+    table.traits = traits;
+    CHECK(device::compose(choice).text.find(std::string("  static constexpr bool affine = ") + affine + ";") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("a field that a scene has not has a number below zero", "[device]") {
+  const device::Choice choice = usual_choice();
+  CHECK(device::number_of(choice.particle_fields, "temperature") < 0);
+  CHECK(device::first_of({}, Origin::transfer) < 0);
+  CHECK(device::first_of(choice.particle_fields, Origin::transfer) > 0);
 }
 
 TEST_CASE("the host-run device says what a compiler refuses and where", "[device]") {
@@ -112,5 +194,5 @@ TEST_CASE("the host-run device names a phase that a composition lacks", "[device
   device::Device device(*setup.driver, setup.number);
   device.load(Programs::shared().of(composition), composition.name);
   CHECK_THROWS_WITH(device.launch("contact", device::Arguments<double>{}, 1, 1),
-                    ContainsSubstring("no phase \"contact\""));
+                    "the composition 2-D double: bspline_quadratic apic neo_hookean has no phase \"contact\"");
 }

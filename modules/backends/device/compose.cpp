@@ -223,10 +223,10 @@ std::vector<EntryGroup> entry_groups(const Choice& choice) {
   const std::size_t materials = choice.materials.size();
   const bool advances = choice.advance != Advance::apart, apart = choice.advance != Advance::at_once;
   const bool heat = has_temperature(choice), ledger = keeps_ledger(choice);
-  std::vector<EntryGroup> groups{{"MPM_DEVICE_ENTRIES", 1},
-                                 {"MPM_DEVICE_SUM_ENTRIES", 1},
-                                 {"MPM_DEVICE_TOTALS_ENTRIES", 1},
-                                 {"MPM_DEVICE_SORT_ENTRIES", 1},
+  std::vector<EntryGroup> groups{{"MPM_DEVICE_ENTRIES", true},
+                                 {"MPM_DEVICE_SUM_ENTRIES", true},
+                                 {"MPM_DEVICE_TOTALS_ENTRIES", true},
+                                 {"MPM_DEVICE_SORT_ENTRIES", true},
                                  {"MPM_DEVICE_APART_ENTRIES", apart},
                                  {"MPM_DEVICE_BODY_FORCE_ENTRIES", has_body_force(choice)},
                                  {"MPM_DEVICE_LOAD_ENTRIES", has_loads(choice)},
@@ -404,7 +404,8 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
 int most_channels(const Choice& choice) {
   int scattered = 0;
   for (const Field& field : choice.node_fields) scattered += is_scattered(field) ? field.components : 0;
-  return std::max({scattered, 2 * choice.dimension + 1, 4 + choice.dimension});  // as of grips and of heat
+  return std::max(scattered,
+                  4 + choice.dimension);  // as of heat; grips take one less in the plane, and as many in space
 }
 
 const char* embedded_header(std::string_view path) {
