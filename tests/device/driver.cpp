@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "backends/device/device.hpp"
+#include "backends/device/field_arrays.hpp"
 #include "backends/device/memory.hpp"
 #include "backends/device/results.hpp"
 #include "backends/device/sorting.hpp"
@@ -255,6 +256,9 @@ TEST_CASE("a device that cannot be opened is said with its number", "[device][dr
   CHECK_THROWS_WITH(device::devices_of(device::host_driver()),
                     ContainsSubstring("the driver failed to open device 1: CUDA_ERROR_INVALID_DEVICE, invalid device "
                                       "ordinal; see mpm list --devices"));
+  const Injected other("cuDeviceGet", 1, device::driver_invalid_device);
+  CHECK_THROWS_WITH(device::Device(device::host_driver(), 1),
+                    ContainsSubstring("the driver failed to open device 1: CUDA_ERROR_INVALID_DEVICE, "));
 }
 
 TEST_CASE("a result that the driver has no words for is said by its number", "[device][driver]") {
@@ -339,6 +343,91 @@ TEST_CASE("a driver that is too old for the program is said with its version", "
   CHECK(has(message, "install a newer driver"));
 }
 
+TEST_CASE("a driver's version is that of its CUDA", "[device][driver]") {
+  device::Driver driver = device::host_driver();
+  driver.cuDriverGetVersion = [](int* version) -> device::DriverResult {
+    *version = 12080;
+    return device::driver_success;
+  };
+  device::Device device(driver, 0);
+  const Injected failure("cuModuleLoadData", 1, device::driver_no_binary_for_device);
+  CHECK_THROWS_WITH(
+      device.load("no program", "of a test"),
+      "device 0 (host) failed to load the program \"of a test\" (the driver is of CUDA 12.8): "
+      "CUDA_ERROR_NO_BINARY_FOR_GPU, no kernel image is available for the device; the driver is older than "
+      "the compiler that made this program: install a newer driver or an older NVRTC (CUDA_PATH), or use "
+      "--backend cpu");
+}
+
+TEST_CASE("a refusal of the driver says what was asked of which device", "[device][driver]") {
+  const OtherDevices small({{"first", 0, false}, {"a small one", 1000, false}});
+  const std::string kept =
+      "; what was written is kept, and a run with a checkpoint goes on with --resume, also with --device host";
+  device::Device device(device::host_driver(), 1);
+  CHECK_THROWS_WITH(device.allocate(1536, "an array"),
+                    "device 1 (a small one) failed to give 1.5 KiB to an array, with 1000 bytes free: "
+                    "CUDA_ERROR_OUT_OF_MEMORY, out of memory; use larger cells, fewer particles a cell, --set "
+                    "/precision=float, a device with more memory, or --backend cpu");
+  const std::string refused = ": CUDA_ERROR_NOT_INITIALIZED, initialization error" + kept;
+  const auto said = [&](const std::string& function, const auto& call) {
+    const Injected failure(function, 1, device::driver_not_initialized);
+    try {
+      call();
+    } catch (const device::DeviceError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(said("cuMemAlloc_v2", [&] { device.allocate(8, "an array"); }) ==
+        "device 1 (a small one) failed to give memory to an array" + refused);
+  CHECK(said("cuStreamSynchronize", [&] { device.synchronise(); }) ==
+        "device 1 (a small one) failed to copy" + refused);
+  const device::Composition composition = device::compose(device_choice_of(device_experiment(usual_scene(), "double")));
+  device.load(Programs::shared().of(composition), composition.name);
+  device::DeviceArray<device::Stopped> stop(device, "a test", 1);
+  stop.upload({device::nothing_stopped});
+  device::Arguments<double> nothing{};
+  nothing.stop = stop.data();
+  CHECK(said("cuModuleGetFunction", [&] { device.launch("clear", nothing, 1, 1); }) ==
+        "device 1 (a small one) failed to find the phase \"clear\"" + refused);
+  device.launch("clear", nothing, 1, 1);
+  CHECK(said("cuStreamSynchronize", [&] { device.synchronise(); }) ==
+        "device 1 (a small one) failed in the work up to the phase \"clear\"" + refused);
+  CHECK(said("cuLaunchKernel", [&] { device.launch("clear", nothing, 1, 1); }) ==
+        "device 1 (a small one) failed to launch the phase \"clear\"" + refused);
+}
+
+TEST_CASE("a capture that is abandoned leaves no graph", "[device][driver]") {
+  device::Device device(device::host_driver(), 0);
+  const long destroyed = device::calls_on_host("cuGraphDestroy");
+  device.begin_capture();
+  device.abandon_capture();
+  CHECK(device::calls_on_host("cuGraphDestroy") == destroyed + 1);
+  device.abandon_capture();  // there is none
+  CHECK(device::calls_on_host("cuGraphDestroy") == destroyed + 1);
+}
+
+TEST_CASE("phases take the milliseconds that events of the device are apart, a launch after the other",
+          "[device][driver]") {
+  device::Driver driver = device::host_driver();
+  driver.cuEventElapsedTime = [](float* milliseconds, device::EventHandle,
+                                 device::EventHandle) -> device::DriverResult {
+    *milliseconds = 2.5f;
+    return device::driver_success;
+  };
+  device::DeviceSetup setup = device_setup();
+  setup.driver = &driver;
+  const Experiment experiment = device_experiment(usual_scene(), "double");
+  Simulation simulation(experiment, device_factory(setup));
+  simulation.backend().measure_phases(true);
+  const long before = device::calls_on_host("cuLaunchKernel");
+  simulation.step();
+  simulation.backend().body_state(0);  // waits for the step's end
+  double sum = 0;
+  for (const auto& [phase, seconds] : simulation.backend().phase_seconds()) sum += seconds;
+  CHECK(sum == Approx(0.0025 * static_cast<double>(device::calls_on_host("cuLaunchKernel") - before)));
+}
+
 TEST_CASE("a program that is none is refused", "[device][driver]") {
   device::DeviceSetup setup = device_setup();
   setup.compile = [](const device::Composition&, const std::string&) { return std::string("no program at all"); };
@@ -350,6 +439,7 @@ TEST_CASE("a program that is none is refused", "[device][driver]") {
 }
 
 TEST_CASE("devices are counted from 0, and one that is not there is refused", "[device][driver]") {
+  const std::string see_devices = "; see mpm list --devices for the devices of this machine, or use --backend cpu";
   device::DeviceSetup setup = device_setup();
   {
     const OtherDevices two({{"one", 0, false}, {"another", 0, false}});
@@ -359,7 +449,7 @@ TEST_CASE("devices are counted from 0, and one that is not there is refused", "[
     CHECK(device::bytes_on_host(0) == 0);
     CHECK(device::bytes_on_host(1) > 0);
     setup.number = 2;
-    CHECK(has(message_of_run(setup), "there is no device 2: the driver lists 2 devices, from number 0"));
+    CHECK(message_of_run(setup) == "there is no device 2: the driver lists 2 devices, from number 0" + see_devices);
     const auto all = device::devices_of(device::host_driver());
     REQUIRE(all.size() == 2);
     CHECK(all[1].name == "another");
@@ -368,8 +458,69 @@ TEST_CASE("devices are counted from 0, and one that is not there is refused", "[
   const OtherDevices none({});
   setup.number = 0;
   const std::string message = message_of_run(setup);
-  CHECK(has(message, "the driver lists no device"));
-  CHECK(has(message, "--backend cpu"));
+  CHECK(message == "the driver lists no device" + see_devices);
+}
+
+namespace {
+
+/// Stands in for launches of the host's driver, and keeps how many teams the largest scatter has had.
+struct LargestScatter {
+  inline static device::FunctionHandle scatter = nullptr;
+  inline static unsigned teams = 0;
+  static device::DriverResult find(device::FunctionHandle* found, device::ModuleHandle module, const char* name) {
+    const device::DriverResult result = device::host_driver().cuModuleGetFunction(found, module, name);
+    if (name == std::string("mpm_scatter")) scatter = *found;
+    return result;
+  }
+  static device::DriverResult launch(device::FunctionHandle function, unsigned x, unsigned y, unsigned z,
+                                     unsigned lanes, unsigned lanes_y, unsigned lanes_z, unsigned shared,
+                                     device::StreamHandle stream, void** parameters, void** extra) {
+    if (function == scatter) teams = std::max(teams, x);
+    return device::host_driver().cuLaunchKernel(function, x, y, z, lanes, lanes_y, lanes_z, shared, stream, parameters,
+                                                extra);
+  }
+  static device::DriverResult attribute(int* value, int asked, device::DeviceNumber device) {
+    const device::DriverResult result = device::host_driver().cuDeviceGetAttribute(value, asked, device);
+    if (asked == device::attribute_multiprocessors) *value = 2;
+    return result;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("as many teams work on the blocks of a body as the device's multiprocessors hold", "[device][driver]") {
+  device::Driver driver = device::host_driver();
+  driver.cuModuleGetFunction = LargestScatter::find, driver.cuLaunchKernel = LargestScatter::launch;
+  driver.cuDeviceGetAttribute = LargestScatter::attribute;
+  device::DeviceSetup setup = device_setup();
+  setup.driver = &driver;
+  // 52 by 40 cells have more than 100 blocks of 4 by 4, and the bodies as many particles.
+  const Experiment experiment =
+      device_experiment(Mix{}.text(), "double", {"/grid/cell_size=0.025", "/solver/time_step=0.001"});
+  Simulation simulation(experiment, device_factory(setup));
+  simulation.step();
+  CHECK(LargestScatter::teams == 2 * 32);  // 2048 threads of a multiprocessor, 64 a team
+  setup.lanes = 257;
+  CHECK_THROWS_WITH(Simulation(experiment, device_factory(setup)), "a team has 1 to 256 lanes");
+}
+
+TEST_CASE("a step that ends with no pass is refused", "[device][driver]") {
+  const Experiment experiment = device_experiment(Mix{}.text(), "double");
+  Step loop;
+  loop.kind = Step::Kind::repeat_until, loop.children.emplace_back().kind = Step::Kind::pass;
+  for (const Step& last : {loop, Step{}})
+    CHECK_THROWS_WITH(Simulation(experiment,
+                                 [&](const Experiment& e, Plan plan, const std::vector<SeededBody>& bodies) {
+                                   plan.step.children.push_back(last);
+                                   return device::make_device_backend(e, plan, bodies, device_setup());
+                                 }),
+                      "the device cannot tell which pass ends a step");
+}
+
+TEST_CASE("more fields than the tables of a device hold are refused", "[device][driver]") {
+  device::Device device(device::host_driver(), 0);
+  CHECK_THROWS_WITH(device::FieldArrays<double>(device, "an owner", std::vector<Field>(65), 1),
+                    "a scene has 65 fields and the device's tables hold 64");
 }
 
 TEST_CASE("phases are timed by events of the device", "[device][driver]") {

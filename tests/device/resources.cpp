@@ -111,8 +111,16 @@ TEST_CASE("what ptxas says of kernels is read, in the words of CUDA 11 and 13", 
   CHECK(read[1].registers == 18);
   CHECK(read[1].shared_bytes == 4224);
   CHECK(!read[1].spills());
-  CHECK_THROWS_AS(device::resources_in("ptxas info    : Compiling entry function 'mpm_move' for 'sm_80'\n"),
-                  std::invalid_argument);
+  const std::string begun = "ptxas info    : Compiling entry function 'mpm_move' for 'sm_80'\n";
+  for (const std::string& log : {begun, begun + begun, begun + "ptxas info    : Used nothing\n"})
+    CHECK_THROWS_WITH(device::resources_in(log), "ptxas says no registers of move");
+  // Each line is read from its first letter on.
+  const auto bare =
+      device::resources_in(begun + "64 bytes stack frame\nUsed 18 registers\n" + begun + "Used 20 registers\n");
+  REQUIRE(bare.size() == 2);
+  CHECK(bare[0].stack_bytes == 64);
+  CHECK(bare[0].registers == 18);
+  CHECK(bare[1].kernel == "move");
 }
 
 TEST_CASE("the ceiling on occupancy is that of NVIDIA's calculator", "[device][resources]") {
@@ -131,7 +139,14 @@ TEST_CASE("the ceiling on occupancy is that of NVIDIA's calculator", "[device][r
   CHECK(share(h100, 32, 48 * 1024) == 0.25);    // 4 teams of 49 KiB in 228
   CHECK(share(a100, 32, 48 * 1024) == 0.1875);  // 3 in 164
   CHECK(share(a100, 16, 0, 32) == 0.5);         // 32 teams of one warp
-  CHECK_THROWS_WITH(device::multiprocessor("sm_75"), ContainsSubstring("sm_75") && ContainsSubstring("sm_80, sm_90"));
+  CHECK(share(a100, 16, 0, 33) == 1);           // of two
+  CHECK(share(h100, 16, 0) == 1);               // 16 teams of four warps
+  // A team takes whole units of 128 bytes, and 1 KiB for the system: 45696 + 1024 bytes are more than a fifth of 228 KiB,
+  // and 113.25 + 1 KiB more than half.
+  CHECK(share(h100, 32, 45632) == 0.25);
+  CHECK(share(h100, 32, 115968) == 0.0625);
+  CHECK_THROWS_WITH(device::multiprocessor("sm_75"),
+                    "no figures are known of the architecture \"sm_75\"; there are sm_80, sm_90");
 }
 
 TEST_CASE("no kernel of the standard scenes spills registers", "[device][resources]") {

@@ -95,7 +95,7 @@ std::string DevicePlan::to_text() const {
   text += row("  %.0f bytes a node, with all velocity fields\n", bytes_per_node()) +
           fields_text(memory, TakenMemory::of_nodes);
   text += "  " + std::to_string(kernels.size()) + " kernels";
-  if (!missing.empty() && taken.empty()) return text + "; what they take is not known: " + missing + "\n";
+  if (!missing.empty()) return text + "; what they take is not known: " + missing + "\n";
   text += ", as " + compiler + " compiles them for " + processor.architecture + " (nothing was run), with " +
           std::to_string(lanes_of_gpu) + " lanes a team\n";
   text += row("    %-32s %9s %8s %7s %7s %10s\n", "kernel", "registers", "shared", "stack", "spilled", "occupancy");
@@ -116,7 +116,7 @@ Json DevicePlan::to_json() const {
                               {"bytes", field.bytes},
                               {"within_a_step", field.working}});
   json["kernel_count"] = kernels.size();
-  if (taken.empty()) {
+  if (!missing.empty()) {
     json["missing"] = missing;
     return json;
   }

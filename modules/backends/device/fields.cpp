@@ -13,7 +13,6 @@ Field working_field(const std::string& id, const std::string& unit, int componen
   field.id = field.name = id, field.unit = unit;
   field.components = components;
   field.lifetime = Lifetime::step;
-  field.because = "the device's phases are apart";
   return field;
 }
 
