@@ -463,12 +463,15 @@ TEST_CASE("devices are counted from 0, and one that is not there is refused", "[
 
 namespace {
 
-/// Stands in for launches of the host's driver, and keeps how many teams the largest scatter has had.
-struct LargestScatter {
+/// Stands in for launches of the host's driver, and keeps which phases are launched and how many teams the largest scatter
+/// has had.
+struct LookedAt {
+  inline static std::set<std::string> phases;
   inline static device::FunctionHandle scatter = nullptr;
   inline static unsigned teams = 0;
   static device::DriverResult find(device::FunctionHandle* found, device::ModuleHandle module, const char* name) {
     const device::DriverResult result = device::host_driver().cuModuleGetFunction(found, module, name);
+    phases.insert(name);
     if (name == std::string("mpm_scatter")) scatter = *found;
     return result;
   }
@@ -490,8 +493,8 @@ struct LargestScatter {
 
 TEST_CASE("as many teams work on the blocks of a body as the device's multiprocessors hold", "[device][driver]") {
   device::Driver driver = device::host_driver();
-  driver.cuModuleGetFunction = LargestScatter::find, driver.cuLaunchKernel = LargestScatter::launch;
-  driver.cuDeviceGetAttribute = LargestScatter::attribute;
+  driver.cuModuleGetFunction = LookedAt::find, driver.cuLaunchKernel = LookedAt::launch;
+  driver.cuDeviceGetAttribute = LookedAt::attribute;
   device::DeviceSetup setup = device_setup();
   setup.driver = &driver;
   // 52 by 40 cells have more than 100 blocks of 4 by 4, and the bodies as many particles.
@@ -499,9 +502,25 @@ TEST_CASE("as many teams work on the blocks of a body as the device's multiproce
       device_experiment(Mix{}.text(), "double", {"/grid/cell_size=0.025", "/solver/time_step=0.001"});
   Simulation simulation(experiment, device_factory(setup));
   simulation.step();
-  CHECK(LargestScatter::teams == 2 * 32);  // 2048 threads of a multiprocessor, 64 a team
+  CHECK(LookedAt::teams == 2 * 32);  // CUDA C++ Programming Guide: at most 32 a multiprocessor, of 8.0 and 9.0
   setup.lanes = 257;
   CHECK_THROWS_WITH(Simulation(experiment, device_factory(setup)), "a team has 1 to 256 lanes");
+}
+
+TEST_CASE("forces are folded where nodes have them apart from the momenta", "[device][driver]") {
+  device::Driver driver = device::host_driver();
+  driver.cuModuleGetFunction = LookedAt::find;
+  device::DeviceSetup setup = device_setup();
+  setup.driver = &driver;
+  for (const bool apart : {false, true}) {
+    LookedAt::phases.clear();
+    const Experiment experiment = device_experiment(
+        Mix{}.text(), "double", {set("/output", apart ? R"({"ledger": true})" : R"({"ledger": false})")});
+    Simulation simulation(experiment, device_factory(setup));
+    simulation.step();
+    CHECK(LookedAt::phases.count("mpm_fold_masses") == 1);
+    CHECK(LookedAt::phases.count("mpm_fold_forces") == (apart ? 1 : 0));
+  }
 }
 
 TEST_CASE("a step that ends with no pass is refused", "[device][driver]") {

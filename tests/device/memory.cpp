@@ -170,11 +170,15 @@ TEST_CASE("what a particle and a node take on a device is as a hand counts it", 
   CHECK(named(device::taken_by_one(heated, make_plan(heated)), "exact sums").components == 2 * 6);
 }
 
-TEST_CASE("where a body begins is kept on a device and no work of a step", "[device][memory]") {
-  Mix mix;
-  mix.overrides = {R"J(/body_force=["X", 0])J"};
-  const Experiment experiment = device_experiment(mix.text(), "double", mix.overrides);
-  CHECK_FALSE(named(device::taken_by_one(experiment, make_plan(experiment)), "initial_position").working);
+TEST_CASE("what a load asks a particle to keep is as a hand counts it", "[device][memory]") {
+  const Experiment pushed = three_bodies(
+      "double",
+      {R"J(/body_force=["X", 0])J", R"(/loads=[{"type": "force", "body": "a", "at": [0.3, 0.3], "force": [5, 2]}])"});
+  const std::vector<device::TakenMemory> taken = device::taken_by_one(pushed, make_plan(pushed));
+  CHECK_FALSE(named(taken, "initial_position").working);
+  CHECK(named(taken, "load_force").components == 2);
+  CHECK(named(taken, "load_moment").components == 2 * 2);
+  CHECK(named(taken, "deformation").components == 2 * 2);  // which the fluid does not keep for itself
 }
 
 TEST_CASE("a run that does not fit is refused with what takes most and whose it is", "[device][memory]") {
