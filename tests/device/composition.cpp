@@ -173,7 +173,10 @@ TEST_CASE("each trait of a transfer that reads the affine moment makes kernels f
 
 TEST_CASE("a field that a scene has not has a number below zero", "[device]") {
   const device::Choice choice = usual_choice();
-  CHECK(device::number_of(choice.particle_fields, "temperature") < 0);
+  for (const std::string id : {"temperature", "melted_fraction", "size", "artificial_pressure", "initial_position"}) {
+    INFO(id);
+    CHECK(device::number_of(choice.particle_fields, id) < 0);
+  }
   CHECK(device::first_of({}, Origin::transfer) < 0);
   CHECK(device::first_of(choice.particle_fields, Origin::transfer) > 0);
 }

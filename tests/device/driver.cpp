@@ -382,9 +382,6 @@ TEST_CASE("a refusal of the driver says what was asked of which device", "[devic
         "device 1 (a small one) failed to give memory to an array" + refused);
   CHECK(said("cuStreamSynchronize", [&] { device.synchronise(); }) ==
         "device 1 (a small one) failed to copy" + refused);
-  device::DeviceArray<int> array(device, "an array", 10);
-  CHECK_THROWS(array.resize(1000));
-  CHECK(array.count() == 0);  // what it held is given back
   const device::Composition composition = device::compose(device_choice_of(device_experiment(usual_scene(), "double")));
   device.load(Programs::shared().of(composition), composition.name);
   device::DeviceArray<device::Stopped> stop(device, "a test", 1);

@@ -41,7 +41,6 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   std::vector<Field> fields, material;
   for (const Field& field : plan.fields) {
     if (!field.of_particles_of(body) || field.lifetime == Lifetime::seeded) continue;
-    if (field.origin == Origin::host && field.id == "identity") continue;  // particles keep the order of seeding
     if (field.origin == Origin::host && (field.id == "melted_fraction" || field.id == "deformation" ||
                                          field.id == "size" || field.id == "artificial_pressure"))
       continue;  // they come below
