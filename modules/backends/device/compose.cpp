@@ -404,8 +404,8 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
 int most_channels(const Choice& choice) {
   int scattered = 0;
   for (const Field& field : choice.node_fields) scattered += is_scattered(field) ? field.components : 0;
-  return std::max(scattered,
-                  4 + choice.dimension);  // as of heat; grips take one less in the plane, and as many in space
+  // As of heat; grips take one less in the plane, and as many in space.
+  return std::max(scattered, 4 + choice.dimension);
 }
 
 const char* embedded_header(std::string_view path) {
