@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 
 #include "backends/device/drivers/host_graph.hpp"
@@ -21,13 +21,11 @@
 namespace mpm::device {
 
 struct OpaqueStream {
-  ContextHandle context;
   HostOperations waiting;
   HostCapture capture;
 };
 
 struct OpaqueEvent {
-  StreamHandle stream = nullptr;
   bool reached = false;
   std::chrono::steady_clock::time_point when;
 };
@@ -44,8 +42,10 @@ struct OpaqueModule {
   ~OpaqueModule() { dlclose(library); }
 };
 
+constexpr std::align_val_t line{256};  // what CUDA aligns memory to
+
 struct FreeMemory {
-  void operator()(unsigned char* memory) const { std::free(memory); }
+  void operator()(unsigned char* memory) const { ::operator delete(memory, line); }
 };
 struct Allocation {
   std::unique_ptr<unsigned char, FreeMemory> memory;
@@ -90,6 +90,7 @@ Host& host() {
 thread_local ContextHandle current = nullptr;
 
 bool loses_the_device(DriverResult result) {
+  if (result == driver_launch_out_of_resources) return false;  // such a launch does not begin
   return (result >= driver_illegal_address && result <= driver_launch_failed) || result == driver_device_unavailable;
 }
 
@@ -220,7 +221,8 @@ DriverResult cuDeviceGet(DeviceNumber* device, int ordinal) {
 }
 DriverResult cuDeviceGetName(char* name, int length, DeviceNumber device) {
   MPM_BEGIN(cuDeviceGetName)
-  if (!is_device(device) || length < 1) return driver_invalid_device;
+  if (!is_device(device)) return driver_invalid_device;
+  if (length < 1) return driver_invalid_value;
   const std::string& full = host().devices[static_cast<std::size_t>(device)].name;
   const std::size_t fits = std::min(full.size(), static_cast<std::size_t>(length) - 1);
   std::memcpy(name, full.data(), fits);
@@ -285,8 +287,7 @@ DriverResult cuMemAlloc_v2(DevicePointer* pointer, std::size_t bytes) {
   MPM_REFUSE_IN_CAPTURE
   if (bytes == 0) return driver_invalid_value;
   if (bytes > memory_of(current->device) - current->bytes) return driver_out_of_memory;
-  constexpr std::size_t line = 256;
-  auto* const memory = static_cast<unsigned char*>(std::aligned_alloc(line, (bytes + line - 1) / line * line));
+  auto* const memory = static_cast<unsigned char*>(::operator new(bytes, line, std::nothrow));
   if (!memory) return driver_out_of_memory;
   std::memset(memory, 0xff, bytes);
   const auto address = reinterpret_cast<std::uintptr_t>(memory);
@@ -351,7 +352,6 @@ DriverResult cuMemsetD8Async(DevicePointer to, unsigned char value, std::size_t 
 DriverResult cuStreamCreate(StreamHandle* stream, unsigned) {
   MPM_BEGIN_IN_CONTEXT(cuStreamCreate)
   auto made = std::make_unique<OpaqueStream>();
-  made->context = current;
   *stream = made.get();
   current->streams[*stream] = std::move(made);
   return driver_success;
@@ -417,7 +417,7 @@ DriverResult cuEventDestroy_v2(EventHandle event) {
 DriverResult cuEventRecord(EventHandle event, StreamHandle stream) {
   MPM_BEGIN_IN_CONTEXT(cuEventRecord)
   if (!event || !is_stream(stream)) return driver_invalid_handle;
-  event->stream = stream, event->reached = false;
+  event->reached = false;
   stream->waiting.emplace_back([=] { event->when = std::chrono::steady_clock::now(), event->reached = true; });
   return driver_success;
 }
