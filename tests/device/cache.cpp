@@ -46,6 +46,32 @@ struct Refusing final : device::Compiler {
   }
 };
 
+/// A compiler that says what it was told to.
+struct Saying final : device::Compiler {
+  std::string words;
+  std::string identity(const std::string&) const override { return "saying"; }
+  std::string compile(const device::Composition&, const std::string&) const override {
+    throw device::CompilerError(words);
+  }
+};
+
+/// A variable of the environment for the time of a test; null where there is none.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    set(value);
+  }
+  ~Variable() { set(before_ ? before_->c_str() : nullptr); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  void set(const char* value) { value ? setenv(name_, value, 1) : unsetenv(name_); }
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
 /// A compiler of large programs, whose bytes take a while to be written.
 struct Large final : device::Compiler {
   std::string identity(const std::string&) const override { return "large"; }
@@ -208,4 +234,47 @@ TEST_CASE("a functor that does not compile is said with its plugin, its line and
       device::program_of(device::compose(choice), Refusing{}, "host"),
       ContainsSubstring("shape plugin bspline_quadratic:2") && ContainsSubstring("nowhere") &&
           ContainsSubstring("the text of shape plugin bspline_quadratic comes from /somewhere/shape_odd.so"));
+}
+
+TEST_CASE("files of plugins are told where a compiler names their text, in the ways of GCC and NVRTC",
+          "[device][cache]") {
+  const CacheIn nowhere("");
+  device::Composition composition{"a scene", "text", "hash of text", {}, {}};
+  composition.plugins = {{"material plugin a", "/a.so"}, {"shape plugin b", "/b.so"}, {"contact plugin c", "/c.so"}};
+  Saying compiler;
+  compiler.words =
+      "material plugin a:7: error: no\nshape plugin b(9): error: nor this; contact plugin c, which is right";
+  CHECK_THROWS_WITH(
+      device::program_of(composition, compiler, "host"),
+      compiler.words + "\nthe text of material plugin a comes from /a.so\nthe text of shape plugin b comes from /b.so");
+}
+
+TEST_CASE("a program of the host is kept by its compiler's name, version and options", "[device][cache]") {
+  const TemporaryFolder folder;
+  const CacheIn here(folder / "cache");
+  const device::Composition composition{"a scene", "int f() { return 1; }\n", "hash of text", {}, {}};
+  const std::string program = device::setup_for("host").compile(composition, "host");
+  const device::HostCompiler compiler;
+  std::string identity = "c++\n" + compiler.version();
+  for (const std::string& option : compiler.all_options()) identity += "\n" + option;
+  const device::ProgramCache cache = device::ProgramCache::of_user();
+  CHECK(cache.find(device::cache_key(composition, identity, {"host"})) == program);
+  CHECK(cache.contents().programs == 1);
+}
+
+TEST_CASE("the cache lies where the environment says, and keeps up to 256 MiB", "[device][cache]") {
+  // XDG Base Directory Specification: XDG_CACHE_HOME, or $HOME/.cache where that is not set or empty.
+  const auto folder_with = [](const char* chosen, const char* caches, const char* home) {
+    const Variable first("MPM_CACHE", chosen), second("XDG_CACHE_HOME", caches), third("HOME", home);
+    const device::ProgramCache cache = device::ProgramCache::of_user();
+    CHECK(cache.most_bytes() == 268435456);
+    return cache.folder().string();
+  };
+  CHECK(folder_with("/mine", "/caches", "/home/me") == "/mine");
+  CHECK(folder_with("", "/caches", "/home/me").empty());
+  CHECK(folder_with(nullptr, "/caches", "/home/me") == "/caches/mpm/programs");
+  CHECK(folder_with(nullptr, "", "/home/me") == "/home/me/.cache/mpm/programs");
+  CHECK(folder_with(nullptr, nullptr, "/home/me") == "/home/me/.cache/mpm/programs");
+  CHECK(folder_with(nullptr, nullptr, "").empty());
+  CHECK(folder_with(nullptr, nullptr, nullptr).empty());
 }

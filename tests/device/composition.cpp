@@ -1,8 +1,14 @@
 // The composed text itself: what is in it, how it is named, and what is refused.
 
+#include <sys/time.h>
+
+#include <csignal>
+#include <fstream>
+
 #include "backends/device/device.hpp"
 #include "backends/device/drivers/nvrtc.hpp"
 #include "device/device_support.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -21,6 +27,42 @@ struct OddShape {
     descriptor.source = source;
     plugin.descriptor = &descriptor;
   }
+};
+
+const device::Composition small_composition{"a small one", "int f() { return 1; }\n", "", {}, {}};
+
+/// A compiler of a few lines for the shell.
+device::HostCompiler compiler_of_shell(const TemporaryFolder& folder, const std::string& lines) {
+  const std::filesystem::path file = folder / "compiler";
+  std::ofstream(file) << "#!/bin/sh\n" << lines << "\n";
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  device::HostCompiler compiler;
+  compiler.program = file.string();
+  return compiler;
+}
+
+/// A timer that interrupts system calls of this process every few milliseconds.
+class Interruptions {
+ public:
+  Interruptions() {
+    struct sigaction action = {};
+    action.sa_handler = [](int) {};
+    sigaction(SIGALRM, &action, &before_);
+    every(5000);
+  }
+  ~Interruptions() {
+    every(0);
+    sigaction(SIGALRM, &before_, nullptr);
+  }
+  Interruptions(const Interruptions&) = delete;
+  Interruptions& operator=(const Interruptions&) = delete;
+
+ private:
+  static void every(int microseconds) {
+    const itimerval timer{{0, microseconds}, {0, microseconds}};
+    setitimer(ITIMER_REAL, &timer, nullptr);
+  }
+  struct sigaction before_ = {};
 };
 
 }  // namespace
@@ -189,6 +231,39 @@ TEST_CASE("the host-run device says what a compiler refuses and where", "[device
   device::HostCompiler none;
   none.program = "no-such-compiler";
   CHECK_THROWS_WITH(none.compile(broken), ContainsSubstring("apt install g++"));
+}
+
+TEST_CASE("a compiler of the host is told by the words and the end of the call that fails", "[device]") {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& lines, const std::string& words) {
+    const device::HostCompiler compiler = compiler_of_shell(folder, lines);
+    CHECK_THROWS_WITH(compiler.compile(small_composition),
+                      "\"" + compiler.program + "\" does not compile the composition a small one " + words);
+  };
+  said("case \"$*\" in *-shared*) echo short >&2; exit 3;; esac\necho many words of the first call, which is well",
+       "(status 3):\nshort\n");
+  said("kill -9 $$", "(status 137):\n");  // 128 and the signal, as of shells
+  const device::HostCompiler compiler = compiler_of_shell(folder, "echo it is broken\nexit 4");
+  CHECK_THROWS_WITH(compiler.version(), "\"" + compiler.program + " --version\" ends with status 4");
+  CHECK(compiler_of_shell(folder, "echo one 1.2\necho more").version() == "one 1.2");
+}
+
+TEST_CASE("a compiler of the host leaves nothing behind, whatever signals this process takes", "[device]") {
+  const TemporaryFolder folder;
+  const char* const before = std::getenv("TMPDIR");
+  const std::string usual = before ? before : "/tmp";
+  setenv("TMPDIR", folder.path().c_str(), 1);
+  const device::HostCompiler compiler;
+  const auto compiles = [&] { return compiler.compile(small_composition).starts_with("\177ELF"); };
+  {
+    const Interruptions interruptions;
+    CHECK(compiles());
+  }
+  const auto usual_action = std::signal(SIGCHLD, SIG_IGN);  // as some parents leave it to their children
+  CHECK(compiles());
+  std::signal(SIGCHLD, usual_action);
+  CHECK(std::filesystem::is_empty(folder.path()));
+  setenv("TMPDIR", usual.c_str(), 1);
 }
 
 TEST_CASE("the host-run device names a phase that a composition lacks", "[device]") {

@@ -64,8 +64,8 @@ std::string in_process_with(const std::vector<fs::path>& libraries, const std::f
 }
 
 /// An NVRTC of CUDA 11.7 that makes of a text that text and the options, one a line; with -v it says what a kernel takes,
-/// and of a text that begins with "wrong" that it is wrong;
-/// that of CUDA 99.7 says so of any.
+/// and of a text that begins with "wrong" that it is wrong; that of CUDA 99.7 says so of any. It makes no program of "refused",
+/// has a word of one letter about "brief", and fails to tell the length of its words about "mute" and of the code of "empty".
 const std::string compiler_text = R"(
 #include <cstring>
 #include <string>
@@ -73,6 +73,7 @@ struct Program { std::string text, log, code; };
 extern "C" {
 int nvrtcVersion(int* major, int* minor) { *major = MAJOR, *minor = 7; return 0; }
 int nvrtcCreateProgram(Program** p, const char* text, const char*, int, const char* const*, const char* const*) {
+  if (!std::strcmp(text, "refused")) return 2;
   *p = new Program{text, "", ""};
   return 0;
 }
@@ -88,16 +89,20 @@ int nvrtcCompileProgram(Program* p, int count, const char* const* options) {
                "    0 bytes stack frame, 0 bytes spill stores, 0 bytes spill loads\n"
                "ptxas info    : Used 32 registers\n";
   }
+  if (p->text == "brief") p->log = "x";
+  if (p->text == "mute") p->log = "words that nobody is told the length of";
   if (p->text.rfind("wrong", 0) != 0 && MAJOR < 99) return 0;
   p->log = "it is wrong";
   return 6;
 }
-int nvrtcGetProgramLogSize(Program* p, std::size_t* size) { *size = p->log.size() + 1; return 0; }
+int nvrtcGetProgramLogSize(Program* p, std::size_t* size) { *size = p->log.size() + 1; return p->text == "mute"; }
 int nvrtcGetProgramLog(Program* p, char* log) { std::strcpy(log, p->log.c_str()); return 0; }
-int CODE_SIZE(Program* p, std::size_t* size) { *size = p->code.size(); return 0; }
+int CODE_SIZE(Program* p, std::size_t* size) { *size = p->code.size(); return p->text == "empty"; }
 int nvrtcGetCUBIN(Program* p, char* code) { std::memcpy(code, p->code.data(), p->code.size()); return 0; }
 int nvrtcDestroyProgram(Program** p) { delete *p; return 0; }
-const char* nvrtcGetErrorString(int) { return "NVRTC_ERROR_COMPILATION"; }
+const char* nvrtcGetErrorString(int error) {
+  return error == 6 ? "NVRTC_ERROR_COMPILATION" : error == 2 ? "NVRTC_ERROR_PROGRAM_CREATION_FAILURE" : "another";
+}
 }
 )";
 
@@ -106,19 +111,22 @@ fs::path compiler_in(const fs::path& folder, int major = 11, const std::string& 
                                                 code_size + "\n" + compiler_text);
 }
 
-/// A driver with a device of 80 GiB and capability 9.0; what it is not asked for here says so.
-fs::path driver_in(const fs::path& folder) {
-  std::string text = R"(
+/// A driver with a device of 80 GiB and capability 9.0; what it is not asked for here says so. It begins with a result that
+/// has this name and text.
+fs::path driver_in(const fs::path& folder, int begins_with = 0, const std::string& name = "\"CUDA_ERROR_UNKNOWN\"",
+                   const std::string& words = "\"an unknown error\"") {
+  std::string text =
+      "#define RESULT " + std::to_string(begins_with) + "\n#define NAME " + name + "\n#define TEXT " + words + R"(
 #include <cstring>
 extern "C" {
-int cuInit(unsigned) { return 0; }
+int cuInit(unsigned) { return RESULT; }
 int cuDeviceGetCount(int* count) { *count = 1; return 0; }
 int cuDeviceGet(int* device, int ordinal) { *device = 40 + ordinal; return 0; }
 int cuDeviceGetName(char* name, int, int device) { std::strcpy(name, device == 40 ? "a GPU" : "another"); return 0; }
 int cuDeviceTotalMem_v2(unsigned long* bytes, int) { *bytes = 80ul << 30; return 0; }
 int cuDeviceGetAttribute(int* value, int attribute, int) { *value = attribute == 75 ? 9 : 0; return 0; }
-int cuGetErrorName(int, const char** s) { *s = "CUDA_ERROR_UNKNOWN"; return 0; }
-int cuGetErrorString(int, const char** s) { *s = "an unknown error"; return 0; }
+int cuGetErrorName(int, const char** s) { *s = NAME; return 0; }
+int cuGetErrorString(int, const char** s) { *s = TEXT; return 0; }
 )";
 #define MPM_STUB(name, parameters) \
   if (text.find("int " #name "(") == text.npos) text += "int " #name "() { return 999; }\n";
@@ -132,6 +140,15 @@ bool has_compiler_already() {
   const bool there = dlopen("libnvrtc.so", RTLD_NOW | RTLD_NOLOAD) != nullptr;
   if (there) WARN("skipped: an NVRTC was loaded before");
   return there;
+}
+
+/// What every message says in the end that the device backend cannot begin with.
+const std::string to_use_instead = "use --backend cpu, or --device host to run the device's kernels on the processor";
+
+/// Why no driver can be used, in words; empty where one can.
+std::string why_no_driver() {
+  std::string why;
+  return device::cuda_driver(why) ? std::string() : why;
 }
 
 /// Why no NVRTC is found on this machine; empty where there is one.
@@ -190,12 +207,7 @@ TEST_CASE("the devices of a machine are listed with its compilers", "[device][li
   const std::string host = "host: the host, 1.5 GiB, this processor: the device's kernels, compiled by c++\n";
   CHECK(in_process_with({driver, compiler}, list) ==
         "0: a GPU, 80 GiB, sm_90\ncompiler: NVRTC 11.7 (libnvrtc.so)\n" + host);
-  const std::string absent = in_process_with({}, [] {
-    std::string why;
-    return device::cuda_driver(why) ? std::string("there") : why;
-  });
-  if (absent != "there") {
-    CHECK(absent.find("NVIDIA") != absent.npos);
+  if (const std::string absent = in_process_with({}, why_no_driver); !absent.empty()) {
     CHECK(in_process_with({compiler}, list) ==
           "no device of CUDA: " + absent + "\ncompiler: NVRTC 11.7 (libnvrtc.so)\n" + host);
   }
@@ -206,6 +218,74 @@ TEST_CASE("the devices of a machine are listed with its compilers", "[device][li
         "0: a GPU, 80 GiB, sm_90\nno compiler of CUDA: libnvrtc.so is not an NVRTC of CUDA 11.2 or newer; install a "
         "newer CUDA toolkit\n" +
             host);
+}
+
+TEST_CASE("a driver that cannot be used is said with what it lacks and what to do", "[device][libraries]") {
+  const TemporaryFolder folder;
+  const fs::path old = library_of(folder / "old/libcuda.so.1", "extern \"C\" int cuInit(unsigned) { return 0; }");
+  CHECK(in_process_with({old}, why_no_driver) ==
+        "the NVIDIA driver on this machine (libcuda) has no function cuDriverGetVersion: it is older than CUDA 11.4; "
+        "install a newer driver; " +
+            to_use_instead);
+  const auto without_device = [&](const std::string& name, const std::string& words) {
+    return in_process_with({driver_in(folder / "driver", 100, name, words)}, why_no_driver);
+  };
+  const std::string begin = "the NVIDIA driver (libcuda) finds no device that it can use: ",
+                    end =
+                        "; see whether nvidia-smi lists a device and CUDA_VISIBLE_DEVICES names it; " + to_use_instead;
+  CHECK(without_device("\"CUDA_ERROR_NO_DEVICE\"", "\"none is there\"") ==
+        begin + "CUDA_ERROR_NO_DEVICE, none is there" + end);
+  CHECK(without_device("nullptr", "nullptr") == begin + "100" + end);
+  const std::string absent = in_process_with({}, why_no_driver);
+  if (!absent.starts_with("backend")) return;  // this machine has a driver
+  CHECK(absent ==
+        "backend \"cuda\" needs NVIDIA's driver: no libcuda.so.1 or libcuda.so on the loader's path (LD_LIBRARY_PATH, "
+        "/etc/ld.so.conf); install the driver of the device; " +
+            to_use_instead);
+}
+
+TEST_CASE("an NVRTC that is not there is said with where it was looked for", "[device][libraries]") {
+  if (missing_compiler().empty()) {
+    WARN("skipped: this machine has an NVRTC");
+    return;
+  }
+  const TemporaryFolder folder;
+  const fs::path driver = driver_in(folder / "driver");
+  const auto said = [&](const char* path, const char* home) {
+    return in_process_with({driver}, [&]() -> std::string {
+      setenv("CUDA_PATH", path, 1), setenv("CUDA_HOME", home, 1);
+      return device::setup_for("0").driver ? "there" : "";
+    });
+  };
+  const std::string begin =
+      "threw backend \"cuda\" compiles its kernels for the scene, and NVRTC was not found: no libnvrtc.so, .so.13, "
+      ".so.12 "
+      "or .so.11.2 on the loader's path";
+  const std::string end =
+      " or in /usr/local/cuda/lib64/; install the CUDA toolkit or set CUDA_PATH to its folder; or " + to_use_instead;
+  CHECK(said("/no/path", "/no/home") == begin + " or in /no/path/lib64/ or in /no/home/lib64/" + end);
+  CHECK(said("/no/path", "/no/path") == begin + " or in /no/path/lib64/" + end);  // once
+  CHECK(said("", "") == begin + end);
+}
+
+TEST_CASE("what NVRTC says of a text is kept to the letter, and what it fails to say is not", "[device][libraries]") {
+  if (has_compiler_already()) return;
+  const TemporaryFolder folder;
+  const fs::path compiler = compiler_in(folder / "compiler");
+  const auto made = [&](const std::string& text) {
+    return in_process_with({compiler}, [&] {
+      std::string why;
+      const device::Cubin cubin = device::Nvrtc::find(why)->compile({"a scene", text, "", {}, {}}, "sm_90");
+      return std::string(cubin.compiled ? "compiled" : "not compiled") + ", \"" + cubin.log + "\", " +
+             cubin.code.substr(0, text.size());
+    });
+  };
+  CHECK(made("good") == "compiled, \"\", good");
+  CHECK(made("brief") == "compiled, \"x\", brief");
+  CHECK(made("mute") == "compiled, \"\", mute");
+  CHECK(made("empty") == "not compiled, \"\", ");
+  CHECK(made("wrong") == "not compiled, \"a scene: NVRTC_ERROR_COMPILATION\nit is wrong\", ");
+  CHECK(made("refused") == "not compiled, \"nvrtcCreateProgram: NVRTC_ERROR_PROGRAM_CREATION_FAILURE\", ");
 }
 
 TEST_CASE("a device of CUDA runs what NVRTC makes, which is kept by all that it depends on", "[device][libraries]") {
@@ -331,7 +411,6 @@ TEST_CASE("a word names the host, or a device by its number", "[device][librarie
   CHECK(!device::is_host_device(""));
   unsetenv("MPM_DEVICE");
   CHECK_THROWS_WITH(device::setup_for("gpu"),
-                    ContainsSubstring("--device: expected \"host\" or the number of a device, got \"gpu\"") &&
-                        ContainsSubstring("see mpm list --devices"));
+                    "--device: expected \"host\" or the number of a device, got \"gpu\"; see mpm list --devices");
   CHECK(device::setup_for("host").driver == &device::host_driver());
 }

@@ -137,6 +137,71 @@ TEST_CASE("a race is told with both lanes, the field's pointer and the bytes fro
   CHECK(texts()[3].find("mpm_c, phase 0: lane 0 of team 0 reads and lane 1 of team 0 writes argument 8") == 0);
 }
 
+TEST_CASE("who was at a word before stays known when one comes back to it", "[device][traffic]") {
+  Launches launches;
+  const auto last_text = [&] {
+    return launches.recorder.races().empty() ? "" : launches.recorder.races().back().text("it");
+  };
+  const auto read_by = [&](int team, int lane) {
+    launches.begin_team(team), launches.recorder.begin_lane(lane), launches.read(2);
+  };
+  launches.begin("mpm_lanes");
+  launches.begin_team(0), launches.recorder.begin_lane(0);
+  launches.read(2), launches.recorder.begin_lane(1), launches.read(2), launches.read(2);
+  CHECK(last_text() == "");
+  launches.write(2);
+  CHECK(last_text() == "mpm_lanes, phase 0: lane 0 of team 0 reads and lane 1 of team 0 writes it, byte 0");
+  launches.begin("mpm_teams");
+  read_by(0, 0), read_by(1, 0), launches.read(2), launches.write(2);
+  CHECK(last_text() == "mpm_teams, phase 0: lane 0 of team 0 reads and lane 0 of team 1 writes it, byte 0");
+  launches.begin("mpm_all_lanes");  // before a team's first phase, whatever lane the team before ended with
+  read_by(0, 3), launches.begin_team(1), launches.read(2);
+  CHECK(launches.recorder.races().size() == 2);
+  launches.write(2);
+  CHECK(last_text() ==
+        "mpm_all_lanes, phase 0: every lane of team 1 writes and every lane of team 1 writes it, byte 0");
+  std::array<float, 4> shared{};
+  launches.begin("mpm_shared");
+  launches.recorder.begin_team(0, shared.data(), sizeof shared);
+  for (const int lane : {0, 1}) {
+    launches.recorder.begin_lane(lane);
+    launches.recorder.access(shared.data() + 3, 4, true, false);
+  }
+  CHECK(last_text() == "mpm_shared, phase 0: lane 0 of team 0 writes and lane 1 of team 0 writes it, byte 12");
+  CHECK(launches.recorder.races().back().argument == -1);
+  CHECK(launches.recorder.races().size() == 4);
+}
+
+TEST_CASE("memory counts in words up to its end, while it is there and a kernel runs", "[device][traffic]") {
+  alignas(4) std::array<char, 64> memory{};
+  device::RaceRecorder recorder;
+  const auto begin = reinterpret_cast<std::uintptr_t>(memory.data());
+  recorder.add_memory(begin, 4), recorder.add_memory(begin + 32, 5);
+  const auto bytes_read = [&](std::size_t at, std::size_t bytes) {
+    const device::Recording recording(&recorder, "mpm_a", {});
+    recorder.forget_traffic();
+    recorder.begin_launch("mpm_a", {});
+    recorder.begin_team(0, nullptr, 0), recorder.begin_lane(0);
+    device::access_recorder()->access(memory.data() + at, bytes, false, false);
+    return recorder.traffic().at("mpm_a").bytes_read;
+  };
+  CHECK(bytes_read(0, 1) == 4);
+  CHECK(bytes_read(0, 4) == 4);
+  CHECK(bytes_read(0, 12) == 4);  // no more than there is
+  CHECK(bytes_read(4, 4) == 0);
+  CHECK(bytes_read(32, 5) == 8);
+  CHECK(bytes_read(36, 1) == 4);
+  CHECK(bytes_read(35, 2) == 8);
+  CHECK(bytes_read(32, 16) == 8);
+  const long accesses = recorder.accesses();
+  CHECK(accesses == 7);
+  device::access_recorder()->access(memory.data(), 4, false, false);  // of no kernel
+  CHECK(recorder.accesses() == accesses);
+  recorder.remove_memory(begin + 32);
+  CHECK(bytes_read(32, 4) == 0);
+  CHECK(recorder.accesses() == accesses);
+}
+
 TEST_CASE("averages are of one step and one particle", "[device][traffic]") {
   device::StepTraffic traffic;
   traffic.kernels = {{"one", {4, 100, 20}}, {"other", {2, 30, 10}}};

@@ -28,8 +28,7 @@ void* load_library(std::string_view bytes) {
     const std::filesystem::path file = std::filesystem::path(folder) / "module.so";
     support::write_atomically(file, bytes, support::Durability::of_program);
     library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  } catch (const std::exception&) {
-    library = nullptr;
+  } catch (const std::exception&) {  // there is no file to load
   }
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);

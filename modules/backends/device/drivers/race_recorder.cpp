@@ -7,6 +7,10 @@ namespace {
 
 constexpr std::size_t word_bytes = 4;
 
+std::size_t words_in(std::size_t bytes) {
+  return (bytes + word_bytes - 1) / word_bytes;
+}
+
 std::string in_words(const Race::Access& access) {
   return (access.lane < 0 ? "every lane" : "lane " + std::to_string(access.lane)) + " of team " +
          std::to_string(access.team) +
@@ -36,7 +40,7 @@ void RaceRecorder::begin_launch(const std::string& kernel, const std::vector<std
 }
 
 void RaceRecorder::add_memory(std::uintptr_t address, std::size_t bytes) {
-  regions_[address] = {address, bytes, 0, std::vector<Word>((bytes + word_bytes - 1) / word_bytes)};
+  regions_[address] = {address, bytes, 0, std::vector<Word>(words_in(bytes))};
 }
 void RaceRecorder::remove_memory(std::uintptr_t address) {
   last_region_ = nullptr;
@@ -44,11 +48,10 @@ void RaceRecorder::remove_memory(std::uintptr_t address) {
 }
 
 void RaceRecorder::begin_team(int team, const void* shared, std::size_t bytes) {
-  now_ = {};
-  now_.team = team;
+  now_ = {team};
   phase_ = 0;
   shared_.begin = reinterpret_cast<std::uintptr_t>(shared), shared_.bytes = bytes;
-  shared_.words.resize((bytes + word_bytes - 1) / word_bytes);
+  shared_.words.resize(words_in(bytes));
   ++shared_.round;
 }
 
