@@ -328,6 +328,8 @@ TEST_CASE("graphs and events of the host driver are asked for by their handles",
   CHECK(milliseconds < 3000);
   for (const auto& [start, end] : {std::pair{first, never}, {never, second}, {first, nullptr}, {nullptr, second}})
     CHECK(host.api.cuEventElapsedTime(&milliseconds, start, end) == device::driver_invalid_handle);
+  CHECK(host.api.cuEventRecord(first, host.stream) == device::driver_success);  // anew, which has not come yet
+  CHECK(host.api.cuEventElapsedTime(&milliseconds, first, second) != device::driver_success);
   for (const device::EventHandle event : events) CHECK(host.api.cuEventDestroy_v2(event) == device::driver_success);
   CHECK(host.api.cuGraphExecDestroy(made) == device::driver_success);
 }
