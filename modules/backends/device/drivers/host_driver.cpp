@@ -99,7 +99,7 @@ DriverResult begin(const char* function) {
   Host& state = host();
   const bool alive = std::any_of(state.contexts.begin(), state.contexts.end(),
                                  [](const auto& context) { return context.second.get() == current; });
-  if (!alive) current = nullptr;  // another thread has given the device back
+  if (!alive) current = nullptr;  // somebody has given the device back
   ++state.calls[function];
   DriverResult result = driver_success;
   for (Failure& failure : state.failures)
@@ -265,7 +265,6 @@ DriverResult cuDevicePrimaryCtxRelease_v2(DeviceNumber device) {
   const auto found = host().contexts.find(device);
   if (found == host().contexts.end()) return driver_invalid_device;
   if (--found->second->users > 0) return driver_success;
-  if (current == found->second.get()) current = nullptr;
   if (!found->second->lost) host().left += found->second->bytes;  // a lost device refuses to take memory back
   host().contexts.erase(found);                                   // a lost device is as new for the next user
   return driver_success;
