@@ -59,7 +59,7 @@ double scaled_difference(const Experiment& experiment, const BodyState& expected
   const double h = experiment.grid.cell_size;
   double length = 0;  // what a coordinate rounds by
   for (int c = 0; c < experiment.dimension; ++c)
-    length = std::max({length, std::abs(experiment.grid.lower[c]), std::abs(experiment.grid.upper[c])});
+    length = larger(length, larger(std::abs(experiment.grid.lower[c]), std::abs(experiment.grid.upper[c])));
   double worst = std::max(difference(expected.position, found.position, length),
                           difference(expected.velocity, found.velocity, speed));
   worst = larger(worst, difference(expected.domain, found.domain, h));

@@ -77,7 +77,7 @@ TEST_CASE("functions in lanes are within 1 or 1.5 units in the last place", "[ex
     for (Vector3& x : points) {
       const double u = static_cast<double>(random() >> 11) / 0x1p53;
       const bool decades = range.upper / range.lower > 1e10;
-      x[0] = decades ? std::exp(std::log(range.lower) + u * std::log(range.upper / range.lower))
+      x[0] = decades ? std::exp(std::log(range.lower) + u * (std::log(range.upper) - std::log(range.lower)))
                      : range.lower + u * (range.upper - range.lower);
     }
     // The hardest angles are nearest to the multiples of a quarter turn.
