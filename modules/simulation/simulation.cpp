@@ -107,12 +107,12 @@ bool Simulation::changes_at(double time, long steps) const {
   return changes_ && changes_->due(time, steps);
 }
 
-/// The next step's scatter needs its dt and its particles: it may neither precede an estimate or a change of the particles
-/// nor be done when there is no next step.
 bool Simulation::ends_with_step() const {
   return ends_at(end_of_step()) || steps_ + 1 >= experiment_.solver.max_steps;
 }
 
+/// The next step's scatter needs its dt and its particles: it may neither precede an estimate or a change of the particles
+/// nor be done when there is no next step.
 bool Simulation::may_scatter_ahead() const {
   return !ends_with_step() && !changes_at(end_of_step(), steps_ + 1) && (steps_ + 1) % estimate_every_ != 0;
 }
@@ -147,7 +147,8 @@ void Simulation::gather(const Step& step, StepInfo& info) {
   const bool ahead = may_scatter_ahead();
   info.next_time = end_of_step();
   info.next_dt = time_step_from(info.next_time);
-  observed_ = info.observed = !ahead || info.observed;  // the state is whole where no scatter has gone ahead
+  // The state is whole where no scatter goes ahead. A stop may have been asked for since the step began.
+  observed_ = info.observed = !ahead || info.observed || wanted_(info.next_time, steps_ + 1);
   execute(step.children[ahead ? 0 : 1], info);
   scattered_ = ahead && backend_->scattered();
 }

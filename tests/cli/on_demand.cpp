@@ -97,6 +97,20 @@ TEST_CASE("on demand: other backends are libraries of their own") {
   CHECK(slurp(part.asked) == "needed backend_reference\n");
 }
 
+TEST_CASE("on demand: what is built by a program whose caller ignores the ends of its children is told as well") {
+  const PartOfABuild part;
+  spill(part.folder / "scene.json", with_other_transfer("apic").dump(1));
+  const auto code_of = [&] {
+    return Process(part.folder,
+                   {"/bin/bash", "-c", "trap '' CHLD; exec \"$0\" check scene.json", (part.bin / "mpm").string()},
+                   {"MPM_LAUNCHER=" + part.launcher.string()})
+        .finish()
+        .code;
+  };
+  CHECK(code_of() == 0);
+  CHECK(has(slurp(part.asked), "transfer_apic"));
+}
+
 TEST_CASE("on demand: without a launcher, or with one that fails, the message says what to call, with code 5") {
   const PartOfABuild part(Words{});
   const Result alone = part.call("run", with_other_transfer("apic"), {}, false);

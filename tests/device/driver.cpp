@@ -478,7 +478,7 @@ struct LookedAt {
   static device::DriverResult launch(device::FunctionHandle function, unsigned x, unsigned y, unsigned z,
                                      unsigned lanes, unsigned lanes_y, unsigned lanes_z, unsigned shared,
                                      device::StreamHandle stream, void** parameters, void** extra) {
-    if (function == scatter) teams = std::max(teams, x);
+    if (function == scatter) teams = larger(teams, x);
     return device::host_driver().cuLaunchKernel(function, x, y, z, lanes, lanes_y, lanes_z, shared, stream, parameters,
                                                 extra);
   }

@@ -323,7 +323,8 @@ TEST_CASE("graphs and events of the host driver are asked for by their handles",
   for (const auto& [start, end] : {std::pair{first, never}, {never, second}, {first, nullptr}, {nullptr, second}})
     CHECK(host.api.cuEventElapsedTime(&milliseconds, start, end) == device::driver_invalid_handle);
   CHECK(host.api.cuEventRecord(first, host.stream) == device::driver_success);  // anew, which has not come yet
-  CHECK(host.api.cuEventElapsedTime(&milliseconds, first, second) != device::driver_success);
+  CHECK(host.api.cuEventElapsedTime(&milliseconds, first, second) == device::driver_not_ready);
+  CHECK(host.api.cuEventElapsedTime(&milliseconds, second, first) == device::driver_not_ready);
   for (const device::EventHandle event : events) CHECK(host.api.cuEventDestroy_v2(event) == device::driver_success);
   CHECK(host.api.cuGraphExecDestroy(made) == device::driver_success);
 }
@@ -372,6 +373,7 @@ TEST_CASE("a launch is refused an address of this process, and no number that is
   };
   CHECK(result_with(address + 4) == device::driver_illegal_address);
   for (const std::uint64_t odd : {1, 2, 3}) CHECK(result_with(address + odd) == device::driver_success);
+  if (!small.there() || !above_small.there()) WARN("an address is taken already: a half of this case is left out");
   if (small.there()) CHECK(result_with(0x10001000) == device::driver_success);  // below 2^32: as good as a count
   if (above_small.there()) CHECK(result_with(0x140001000) == device::driver_illegal_address);
 }

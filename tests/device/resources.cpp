@@ -60,8 +60,8 @@ std::string line(const Compiled& compiled) {
   double least = 1;
   std::string narrowest;
   for (const device::KernelResources& kernel : compiled.plan.taken) {
-    registers = std::max(registers, kernel.registers), shared = std::max(shared, kernel.shared_bytes);
-    stack = std::max(stack, kernel.stack_bytes), spilled += kernel.spilled_bytes;
+    registers = larger(registers, kernel.registers), shared = larger(shared, kernel.shared_bytes);
+    stack = larger(stack, kernel.stack_bytes), spilled += kernel.spilled_bytes;
     const double share = device::occupancy(kernel, compiled.plan.processor);
     if (share < least) least = share, narrowest = kernel.kernel;
   }

@@ -391,8 +391,8 @@ TEST_CASE("a particle is drawn at its true size and place", "[figures]") {
       const auto* p = image.at(x, y);
       // Only the particle is orange and far from the key at the right.
       if (p[0] != 0xD5 || p[1] != 0x5E || p[2] != 0x00 || x > image.width * 6 / 10) continue;
-      left = std::min(left, x);
-      right = std::max(right, x);
+      left = mpm::test::smaller(left, x);
+      right = mpm::test::larger(right, x);
       ++count;
     }
   }
@@ -405,7 +405,7 @@ TEST_CASE("a particle is drawn at its true size and place", "[figures]") {
     int run = 0;
     for (int x = 0; x < image.width; ++x) {
       run = image.at(x, y)[0] < 160 && image.at(x, y)[2] < 160 && image.at(x, y)[1] < 90 ? run + 1 : 0;
-      longest = std::max(longest, run);
+      longest = mpm::test::larger(longest, run);
     }
   }
   CHECK(side / longest == Approx(0.5).margin(0.03));
@@ -451,7 +451,8 @@ TEST_CASE("many small particles are drawn at their true place, within the outlin
     for (int x = 0; x < image.width * 29 / 40; ++x) {
       const auto* p = image.at(x, y);
       if (p[0] != 0xD5 || p[1] != 0x5E || p[2] != 0x00) continue;
-      left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+      left = mpm::test::smaller(left, x), right = mpm::test::larger(right, x), top = mpm::test::smaller(top, y),
+      bottom = mpm::test::larger(bottom, y);
       ++count;
     }
   const double width = right - left + 1, height = bottom - top + 1;

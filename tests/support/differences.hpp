@@ -16,11 +16,7 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
   REQUIRE(a.size() == b.size());
   REQUIRE(!a.empty());
   double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    const double difference = std::abs(a[k] - b[k]);
-    if (std::isnan(difference)) return difference;
-    largest = std::max(largest, difference);
-  }
+  for (std::size_t k = 0; k < a.size(); ++k) largest = larger(largest, std::abs(a[k] - b[k]));
   return largest;
 }
 

@@ -56,8 +56,8 @@ Judged<D, T> judged(const Mat<D, T>& A, const SingularValues<D, T>& r) {
   judged.product = distance(composed(r.U, shrunk, r.V), relative) / epsilon<T>;
   for (const Mat<D, T>& rotation : {r.U, r.V}) {
     const double skew = distance(rotation * transposed(rotation), Mat<D, T>::identity());
-    judged.orthogonal = std::max(
-        {judged.orthogonal, skew / epsilon<T>, std::abs(static_cast<double>(determinant(rotation)) - 1) / epsilon<T>});
+    const double stretch = std::abs(static_cast<double>(determinant(rotation)) - 1);
+    judged.orthogonal = larger(judged.orthogonal, larger(skew, stretch) / epsilon<T>);
   }
   for (int i = 0; i + 1 < D; ++i) {
     judged.order = larger(judged.order, (std::abs(shrunk[i + 1]) - shrunk[i]) / epsilon<T>);

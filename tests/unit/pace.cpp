@@ -28,7 +28,7 @@ class Machine {
   /// Makes steps for so long, s. Returns how many a second, over what the best number of threads would have made.
   double share_of_best(double seconds) {
     double best = 0, took = 0;
-    for (int threads = 1; threads <= most_; ++threads) best = std::max(best, speed_(threads));
+    for (int threads = 1; threads <= most_; ++threads) best = mpm::test::larger(best, speed_(threads));
     long steps = 0;
     for (; took < seconds; ++steps) {
       REQUIRE(pace.threads() >= 1);

@@ -344,7 +344,7 @@ std::vector<double> dissipated_by_cracks() {
   double least = 2, most = 0;
   for (const auto& row : mpm::support::read_csv_cells(MPM_SOURCE_DIR "/figures/studies/damage_cells.csv"))
     if (row.size() > 4 && row[0] == "shape: quadratic B-spline" && row[2] == "computed")
-      least = std::min(least, std::stod(row[4])), most = std::max(most, std::stod(row[4]));
+      least = smaller(least, std::stod(row[4])), most = larger(most, std::stod(row[4]));
   return {least, most};
 }
 

@@ -184,7 +184,7 @@ TEST_CASE("the same seed throws the same points, another one others; blue noise 
     double least = INFINITY;
     for (std::size_t p = 0; p < places.points.size(); ++p)
       for (std::size_t q = 0; q < p; ++q)
-        least = std::min(
+        least = smaller(
             least, std::hypot(places.points[p][0] - places.points[q][0], places.points[p][1] - places.points[q][1]));
     return least / 0.05;
   };

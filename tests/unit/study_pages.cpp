@@ -120,7 +120,7 @@ TEST_CASE("the table of curved bodies in contact is the figure's", "[docs]") {
     for (const auto& row : cells)
       if (row.size() > 4 && row[0] == "grid: " + grid && row[2] == "computed") {
         const double force = std::stod(row[4]);
-        least = std::min(least, force), largest = std::max(largest, force), mean += force / 8, ++count;
+        least = smaller(least, force), largest = larger(largest, force), mean += force / 8, ++count;
       }
     REQUIRE(count == 8);
     const bool coarse = grid == "10 cells, 4 a cell" || grid == "20 cells, 2 a cell";
@@ -481,7 +481,7 @@ TEST_CASE("the table of the trade at the largest steps names the cheapest runs o
     if (!range.count(row[1])) continue;
     auto& [least, most] = range[row[1]];
     const double share = std::stod(row[2]) / of_pic.at(row[0]);
-    least = std::min(least, share), most = std::max(most, share);
+    least = smaller(least, share), most = larger(most, share);
   }
   CHECK(range["FMPM(4)"].first == shares[0].rounded());
   CHECK(range["FMPM(4)"].second == shares[1].rounded());

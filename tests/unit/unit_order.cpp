@@ -107,7 +107,7 @@ TEST_CASE("each thread has a part of space with about as many particles") {
         const std::uint64_t size = 2 * columns.blocks[unit.first].count;
         particles.back() += size;
         all += size;
-        largest_unit = std::max(largest_unit, size);
+        largest_unit = mpm::test::larger(largest_unit, size);
         part.insert(columns.column(unit));
       }
       if (part.empty()) continue;

@@ -286,7 +286,7 @@ TEST_CASE("axisymmetric energy balance closes at second order with USAVG and axi
           residuals.push_back(0);
           while (!scene.simulation.finished()) {
             const Totals now = scene.run_steps(1);
-            residuals.back() = std::max(residuals.back(), std::abs(scene.metrics.ledger_residual(now)));
+            residuals.back() = larger(residuals.back(), std::abs(scene.metrics.ledger_residual(now)));
           }
           const Totals end = scene.metrics.measure();
           CHECK(end.strain > 1e-3 * start.kinetic);  // there is work to account for

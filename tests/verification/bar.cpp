@@ -88,7 +88,7 @@ double order_of_residual(const std::string& backend, const std::string& shape, c
     residuals.push_back(0);  // the run's largest: at single times it passes through zero
     while (!scene.simulation.finished()) {
       scene.simulation.step();
-      residuals.back() = std::max(residuals.back(), std::abs(scene.metrics.ledger_residual(scene.metrics.measure())));
+      residuals.back() = larger(residuals.back(), std::abs(scene.metrics.ledger_residual(scene.metrics.measure())));
     }
     CHECK(residuals.back() < 0.01 * scene.metrics.initial().total_energy());
   }

@@ -164,7 +164,7 @@ std::vector<double> residuals(const char* text, const std::vector<double>& steps
     Scene scene(text, settings);
     largest.push_back(0);
     while (!scene.simulation.finished())
-      largest.back() = std::max(largest.back(), std::abs(scene.metrics.ledger_residual(scene.run_steps(1))));
+      largest.back() = larger(largest.back(), std::abs(scene.metrics.ledger_residual(scene.run_steps(1))));
     largest.back() /= scene.metrics.initial().total_energy();
   }
   return largest;

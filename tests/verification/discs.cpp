@@ -95,8 +95,7 @@ TEST_CASE("two discs: collision conserves momentum and symmetry and never gains 
       double skew = 0;
       for (std::size_t k = 0; k < lower.position.size(); k += 2)
         for (int c = 0; c < 2; ++c)
-          skew =
-              std::max(skew, std::abs(lower.position[k + c] + upper.position[upper.position.size() - 2 - k + c] - 1));
+          skew = larger(skew, std::abs(lower.position[k + c] + upper.position[upper.position.size() - 2 - k + c] - 1));
       CHECK(skew < (shape == "linear" ? 1e-4 : 1e-6));  // crossings amplify rounding
       if (transfer == "pic") {
         CHECK(now.total_energy() < 0.7 * start.total_energy());

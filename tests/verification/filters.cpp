@@ -61,8 +61,8 @@ std::vector<std::string> operator+(std::vector<std::string> list, const std::str
 using mpm::test::largest_difference;
 
 double largest_difference(const Scene& a, const Scene& b) {
-  return std::max(largest_difference(a.body().velocity, b.body().velocity),
-                  largest_difference(a.body().position, b.body().position));
+  return larger(largest_difference(a.body().velocity, b.body().velocity),
+                largest_difference(a.body().position, b.body().position));
 }
 
 /// The velocities after `steps` steps of no duration.
@@ -355,7 +355,7 @@ TEST_CASE("the ledger of a stressed body that is filtered at fixed times closes 
             while (!scene.simulation.finished()) {
               const Totals now = scene.run_steps(1);
               strain = larger(strain, now.strain);
-              residuals.back() = std::max(residuals.back(), std::abs(scene.metrics.ledger_residual(now)));
+              residuals.back() = larger(residuals.back(), std::abs(scene.metrics.ledger_residual(now)));
             }
             const double filtered = scene.simulation.backend().ledger().filter;
             CHECK(strain > 0.3 * energy);  // there are forces

@@ -76,11 +76,11 @@ Settled settle(const Column& column, double cell, double time, const char* preci
   for (std::size_t p = 0; p < log_J.size(); ++p) {
     const double Y = start[2 * p + 1], n = column.exponent;
     settled.height_error =
-        std::max(settled.height_error, std::abs(end.position[2 * p + 1] - column.height_at_rest(Y)) / column.height);
+        larger(settled.height_error, std::abs(end.position[2 * p + 1] - column.height_at_rest(Y)) / column.height);
     if (Y < cell || Y > column.height - cell) continue;
     const double pressure = column.modulus / n * std::expm1(-n * log_J[p]);
     settled.pressure_error =
-        std::max(settled.pressure_error, std::abs(pressure - column.pressure(Y)) / column.pressure(0));
+        larger(settled.pressure_error, std::abs(pressure - column.pressure(Y)) / column.pressure(0));
   }
   std::printf("  %-8s %-7s cell %.4g: pressure %.3e of density g H, height %.3e of H\n", column.equation_of_state,
               precision, cell, settled.pressure_error, settled.height_error);

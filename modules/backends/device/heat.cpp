@@ -49,10 +49,11 @@ template <class T>
 void DeviceBackend<T>::warm(const StepInfo& step) {
   const double dt = step.dt;
   const bool records = plan_.has_heat_ledger(), records_folds = records && heat_conditions_->walls_act();
+  const Tally<1> rate = records_folds ? sum_over_nodes("heat_rate_of_nodes") : nullptr;
   for_each_axis("fold_forces", folded_axes());
   if (records_folds) {
     const Tally<1> folded = sum_over_nodes("heat_rate_of_nodes");
-    later([this, dt, folded] { heat_ledger_.walls += dt * (*folded)[0]; });  // what is conducted sums to nothing before
+    later([this, dt, rate, folded] { heat_ledger_.walls += dt * ((*folded)[0] - (*rate)[0]); });
   }
   const Tally<2> rates = tally<2>();
   for (const int axis : heat_conditions_->exchanging_axes())

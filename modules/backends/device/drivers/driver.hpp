@@ -35,6 +35,7 @@ enum : DriverResult {
   driver_invalid_handle = 400,
   driver_illegal_state = 401,
   driver_not_found = 500,
+  driver_not_ready = 600,
   driver_illegal_address = 700,
   driver_launch_out_of_resources = 701,
   driver_launch_failed = 719,

@@ -37,7 +37,7 @@ class ScratchFolder {
 };
 
 /// Runs a program found on PATH with its output in `log`; returns its exit status, or 128 and the signal that ended it, as
-/// shells do. Throws CompilerError when there is none.
+/// shells do. Throws CompilerError when there is no such program, and where nobody tells how it ended.
 int run_program(const std::vector<std::string>& words, const std::filesystem::path& log) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -52,8 +52,11 @@ int run_program(const std::vector<std::string>& words, const std::filesystem::pa
   if (error)
     throw MissingCompiler("no C++ compiler: cannot start \"" + words[0] + "\": " + std::strerror(error) +
                           "; install g++ (Debian: apt install g++)");
-  int status = 0;  // what stays where the parent ignores the ends of its children, so that nobody is told of them
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR)
+      throw CompilerError("nobody tells how \"" + words[0] +
+                          "\" ended, as this process ignores SIGCHLD; set it to SIG_DFL");
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 

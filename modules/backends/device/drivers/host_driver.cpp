@@ -26,7 +26,7 @@ struct OpaqueStream {
 };
 
 struct OpaqueEvent {
-  bool reached = false;
+  bool recorded = false, reached = false;
   std::chrono::steady_clock::time_point when;
 };
 
@@ -90,8 +90,12 @@ Host& host() {
 thread_local ContextHandle current = nullptr;
 
 bool loses_the_device(DriverResult result) {
-  if (result == driver_launch_out_of_resources) return false;  // such a launch does not begin
-  return (result >= driver_illegal_address && result <= driver_launch_failed) || result == driver_device_unavailable;
+  // Those of which cuda.h says that they leave the process in a state in which no work of CUDA goes on.
+  constexpr DriverResult final_ones[] = {driver_illegal_address,   702 /* time */,        710 /* assertion */,
+                                         714 /* stack */,          715 /* instruction */, 716 /* alignment */,
+                                         717 /* address space */,  718 /* counter */,     driver_launch_failed,
+                                         driver_device_unavailable};
+  return std::find(std::begin(final_ones), std::end(final_ones), result) != std::end(final_ones);
 }
 
 /// Counts a call, and lets it fail where a test wants that or the device is lost. Call it with the state locked.
@@ -416,13 +420,15 @@ DriverResult cuEventDestroy_v2(EventHandle event) {
 DriverResult cuEventRecord(EventHandle event, StreamHandle stream) {
   MPM_BEGIN_IN_CONTEXT(cuEventRecord)
   if (!event || !is_stream(stream)) return driver_invalid_handle;
-  event->reached = false;
+  event->recorded = true, event->reached = false;
   stream->waiting.emplace_back([=] { event->when = std::chrono::steady_clock::now(), event->reached = true; });
   return driver_success;
 }
 DriverResult cuEventElapsedTime(float* milliseconds, EventHandle start, EventHandle end) {
   MPM_BEGIN_IN_CONTEXT(cuEventElapsedTime)
-  if (!start || !end || !start->reached || !end->reached) return driver_invalid_handle;
+  if (!start || !end) return driver_invalid_handle;
+  for (const EventHandle event : {start, end})
+    if (!event->reached) return event->recorded ? driver_not_ready : driver_invalid_handle;
   *milliseconds = std::chrono::duration<float, std::milli>(end->when - start->when).count();
   return driver_success;
 }

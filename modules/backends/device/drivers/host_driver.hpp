@@ -34,8 +34,9 @@ const Driver& host_driver();
 void set_host_devices(std::vector<HostDevice> devices);
 
 /// Lets the `call`-th call from now (from 1) of a function, "cuLaunchKernel", return `result`. From a result that says
-/// that the device is lost (CUDA_ERROR_ILLEGAL_ADDRESS and those up to CUDA_ERROR_LAUNCH_FAILED, of launches that began,
-/// and CUDA_ERROR_DEVICE_UNAVAILABLE) every later call of that context returns it too, as with libcuda. Throws std::logic_error where no function is called so.
+/// that the device is lost (CUDA_ERROR_ILLEGAL_ADDRESS, CUDA_ERROR_LAUNCH_FAILED and the like, after which no work of CUDA
+/// goes on in a process, and CUDA_ERROR_DEVICE_UNAVAILABLE) every later call of that context returns it too, as with
+/// libcuda. Throws std::logic_error where no function is called so.
 void fail_on_host(const std::string& function, long call, DriverResult result);
 /// Forgets the failures that have not come yet.
 void forget_failures_on_host();
