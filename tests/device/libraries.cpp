@@ -177,14 +177,15 @@ TEST_CASE("numbers that a driver is told and gives are those of cuda.h", "[devic
                                device::driver_invalid_handle,
                                device::driver_illegal_state,
                                device::driver_not_found,
+                               device::driver_not_ready,
                                device::driver_illegal_address,
                                device::driver_launch_out_of_resources,
                                device::driver_launch_failed,
                                device::driver_system_driver_mismatch,
                                device::driver_capture_unsupported,
                                device::driver_capture_invalidated};
-  CHECK(found ==
-        std::vector<int>{0, 1, 2, 3, 46, 100, 101, 200, 201, 209, 222, 400, 401, 500, 700, 701, 719, 803, 900, 901});
+  CHECK(found == std::vector<int>{0,   1,   2,   3,   46,  100, 101, 200, 201, 209, 222,
+                                  400, 401, 500, 600, 700, 701, 719, 803, 900, 901});
   CHECK(device::capture_of_thread == 1);
   CHECK(device::attribute_most_shared_memory == 8);
   CHECK(device::attribute_multiprocessors == 16);
