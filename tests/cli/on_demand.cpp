@@ -97,6 +97,34 @@ TEST_CASE("on demand: other backends are libraries of their own") {
   CHECK(slurp(part.asked) == "needed backend_reference\n");
 }
 
+TEST_CASE("on demand: a signal that ends the program ends the build as well, with all that it has started") {
+  const PartOfABuild part;
+  spill(part.launcher, "cd '" + part.folder.path().string() + R"('
+bash -c 'echo $$ > id; mv id compiler; exec sleep 600'
+echo on > went_on
+)");
+  spill(part.folder / "scene.json", with_other_transfer("apic").dump(1));
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+    fs::remove(part.folder / "compiler");
+    Process process(part.folder, {(part.bin / "mpm").string(), "check", "scene.json"},
+                    {"MPM_LAUNCHER=" + part.launcher.string()});
+    REQUIRE(process.wait_until([&] { return fs::exists(part.folder / "compiler"); }));
+    const std::string stat = "/proc/" + std::to_string(std::stol(slurp(part.folder / "compiler"))) + "/stat";
+    const auto runs = [&] {
+      std::error_code error;
+      if (!fs::exists(stat, error)) return false;
+      const std::string text = slurp(stat);
+      return text.find(") Z") == std::string::npos && !text.empty();
+    };
+    CHECK(runs());
+    process.send(signal);
+    CHECK(process.finish().signal == signal);
+    for (int k = 0; runs() && k < 500; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    CHECK(!runs());
+    CHECK(!fs::exists(part.folder / "went_on"));
+  }
+}
+
 TEST_CASE("on demand: what is built by a program whose caller ignores the ends of its children is told as well") {
   const PartOfABuild part;
   spill(part.folder / "scene.json", with_other_transfer("apic").dump(1));
