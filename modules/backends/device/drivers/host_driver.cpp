@@ -427,7 +427,7 @@ DriverResult cuEventRecord(EventHandle event, StreamHandle stream) {
 DriverResult cuEventElapsedTime(float* milliseconds, EventHandle start, EventHandle end) {
   MPM_BEGIN_IN_CONTEXT(cuEventElapsedTime)
   if (!start || !end) return driver_invalid_handle;
-  for (const EventHandle event : {start, end})
+  for (EventHandle event : {start, end})
     if (!event->reached) return event->recorded ? driver_not_ready : driver_invalid_handle;
   *milliseconds = std::chrono::duration<float, std::milli>(end->when - start->when).count();
   return driver_success;
