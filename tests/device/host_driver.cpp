@@ -110,6 +110,7 @@ struct NotingLaunch {
 class PageAt {
  public:
   explicit PageAt(std::uintptr_t address)
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): the address is what is asked for
       : at_(mmap(reinterpret_cast<void*>(address), bytes, PROT_READ | PROT_WRITE,
                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0)) {}
   ~PageAt() {
