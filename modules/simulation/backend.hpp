@@ -398,7 +398,8 @@ class Backend {
   virtual const ContactRecord& contact_record() const = 0;
   /// The record of each pair of fields, in the order of pair_index, where /output/contact_pairs asks; else empty.
   virtual const std::vector<PairRecord>& contact_pairs() const = 0;
-  /// The nodes where fields met in the last step, if it was observed and /output/contact_nodes asks; else empty.
+  /// The nodes where fields met in the last step, where /output/contact_nodes or contact_traction asks and the step was to be
+  /// observed when it began (Simulation::observe_when); else empty.
   virtual const std::vector<ContactNode>& contact_nodes() const = 0;
   virtual const FilterRecord& filter_record() const = 0;
   /// By the number of the support; empty unless an experiment asks for any.

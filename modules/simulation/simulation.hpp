@@ -26,8 +26,10 @@ class Simulation {
   /// Takes one time step: chooses dt and executes every pass of the plan. Throws RunFailure, which leaves the state as
   /// it was when the step failed.
   void step();
-  /// Says by wanted(time in s, number of steps), at the end of each step, which ones will be looked at; at first all
-  /// are. After others, velocities and the transfer's state may be missing (see `observed`); results are the same.
+  /// Says by wanted(time in s, number of steps) which steps will be looked at; at first all are. It is asked as a step
+  /// begins, and of a step that was not wanted then once more before its particles move. After steps that are not wanted
+  /// there are no nodes of contact, and velocities and the transfer's state may be missing (see `observed`); all else is
+  /// the same.
   void observe_when(std::function<bool(double, long)> wanted) { wanted_ = std::move(wanted); }
   /// Whether the state after the last step may be read and saved.
   bool observed() const { return observed_; }

@@ -262,7 +262,7 @@ TEST_CASE("a compiler of the host leaves nothing behind, whatever signals this p
   const auto usual_action = std::signal(SIGCHLD, SIG_IGN);  // as some parents leave it to their children
   // A compiler that failed would look like one that has not.
   CHECK_THROWS_WITH(compiler.compile(small_composition),
-                    "nobody tells how \"c++\" ended, as this process ignores SIGCHLD; set it to SIG_DFL");
+                    "it is not known how \"c++\" ended, as this process ignores SIGCHLD; set it to SIG_DFL");
   std::signal(SIGCHLD, usual_action);
   CHECK(std::filesystem::is_empty(folder.path()));
   before ? setenv("TMPDIR", usual.c_str(), 1) : unsetenv("TMPDIR");

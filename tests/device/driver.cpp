@@ -12,6 +12,7 @@
 #include "backends/device/results.hpp"
 #include "backends/device/sorting.hpp"
 #include "device/device_support.hpp"
+#include "device/scene_size.hpp"
 #include "simulation/boundary.hpp"
 
 using namespace mpm;
@@ -186,16 +187,8 @@ Memory memory_of_many_bodies(double cell_size, const std::string& contact, const
   const Plan plan = make_plan(experiment);
   Simulation simulation(experiment, device_factory());
   simulation.step();
-  device::Arguments<double> scene{};
-  device::SceneSize size{{}, 1, 0, device_setup().lanes};
-  for (int c = 0; c < 2; ++c) {
-    scene.cells[c] = experiment.grid.cells[c], scene.padding[c] = grid_padding_of(experiment.shape.plugin->shape());
-    size.nodes *= static_cast<std::size_t>(scene.cells[c] + 1 + 2 * scene.padding[c]);
-  }
-  size.blocks = device::table_of_blocks(scene, 2).table;
-  for (int body = 0; body < 20; ++body)
-    size.particles.push_back(simulation.backend().body_state(body).position.size() / 2);
   const Backend& backend = simulation.backend();
+  const device::SceneSize size = scene_size(experiment, backend);
   Memory memory{static_cast<double>(device::bytes_on_host(0)), 0,
                 static_cast<double>(backend.particle_bytes() + backend.grid_bytes()), 0, size.blocks};
   const std::set<std::string> beside{"blocks", "contact", "exact sums", "tables of blocks", "sums"};

@@ -6,6 +6,7 @@
 
 #include "backends/device/sorting.hpp"
 #include "device/device_support.hpp"
+#include "device/scene_size.hpp"
 #include "simulation/boundary.hpp"
 
 using namespace mpm;
@@ -105,16 +106,8 @@ TEST_CASE("every array of a device is counted before a run begins as the driver 
                                  R"J(/rigid_bodies=[{"name": "floor", "contact": {"type": "frictionless"},
                         "geometry": {"type": "half_space", "point": [0, 0.15], "normal": [0, 1]}}])J"});
     const std::map<std::string, double> asked = asked_by_name(experiment);
-    device::Arguments<double> scene{};
-    device::SceneSize size{{}, 1, 0, device_setup().lanes};
-    for (int c = 0; c < 2; ++c) {
-      scene.cells[c] = experiment.grid.cells[c], scene.padding[c] = grid_padding_of(experiment.shape.plugin->shape());
-      size.nodes *= static_cast<std::size_t>(scene.cells[c] + 1 + 2 * scene.padding[c]);
-    }
-    size.blocks = device::table_of_blocks(scene, 2).table;
     const Simulation simulation(experiment, device_factory());
-    for (int body = 0; body < 3; ++body)
-      size.particles.push_back(simulation.backend().body_state(body).position.size() / 2);
+    const device::SceneSize size = scene_size(experiment, simulation.backend());
     const std::map<std::string, double> counted = counted_by_name(experiment, size);
     CHECK(counted.size() == 13);
     for (auto [name, bytes] : counted) {

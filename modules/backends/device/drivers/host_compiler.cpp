@@ -37,7 +37,7 @@ class ScratchFolder {
 };
 
 /// Runs a program found on PATH with its output in `log`; returns its exit status, or 128 and the signal that ended it, as
-/// shells do. Throws CompilerError when there is no such program, and where nobody tells how it ended.
+/// shells do. Throws CompilerError when there is no such program, and where this process is not told how it ended.
 int run_program(const std::vector<std::string>& words, const std::filesystem::path& log) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -55,7 +55,7 @@ int run_program(const std::vector<std::string>& words, const std::filesystem::pa
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR)
-      throw CompilerError("nobody tells how \"" + words[0] +
+      throw CompilerError("it is not known how \"" + words[0] +
                           "\" ended, as this process ignores SIGCHLD; set it to SIG_DFL");
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
