@@ -1,6 +1,7 @@
 #include "simulation/failure.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <tuple>
@@ -95,13 +96,27 @@ const char* name_of(Cause cause) {
   return entry_of(cause).name;
 }
 
+bool holds(Precision precision, double value) {
+  const double most =
+      precision == Precision::single ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
+  return std::abs(value) <= most;
+}
+
 Failure force_failure(const Experiment& experiment, const Load* load, int body, std::size_t particle, const Vector3& x,
                       const Vector3& X, double time) {
   const LoadValue value = value_of(load ? load->type : LoadType::body_force);
   const VectorExpression& expression = load ? load->value : *experiment.body_force;
   const std::optional<NotFinite> found = expression.not_finite(x, X, time);
   Failure failure{Cause::force_not_a_number, body, particle, found ? found->component : 0};
-  if (found) failure.value = found->value;
+  if (found) {
+    failure.value = found->value;
+  } else {
+    const Vector3 given = expression(x, X, time);
+    for (int c = experiment.dimension - 1; c >= 0; --c) {
+      if (holds(experiment.precision, given[c])) continue;
+      failure.axis = c, failure.value = std::copysign(std::numeric_limits<double>::infinity(), given[c]);
+    }
+  }
   failure.name = value.name + (value.is_vector ? " along " + axis_name(failure) : "");
   failure.unit = value.unit;
   const std::string pointer = load ? load->pointer + "/" + value.key : experiment.body_force_pointer;

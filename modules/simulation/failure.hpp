@@ -55,8 +55,12 @@ struct Failure {
   std::string name{}, unit{};  ///< of a force: those of `value`
 };
 
+/// Whether a value is a number within the range of a precision.
+bool holds(Precision precision, double value);
+
 /// The failure of a particle where a load, or without one /body_force, has no finite value at the place x that it acts on,
-/// which began at X (m).
+/// which began at X (m), or none that the scene's precision holds: whose operations a backend may have done in it, so that
+/// double precision finds a number there.
 Failure force_failure(const Experiment& experiment, const Load* load, int body, std::size_t particle, const Vector3& x,
                       const Vector3& X, double time);
 

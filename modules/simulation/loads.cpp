@@ -67,29 +67,6 @@ class Neighbourhood {
   mutable std::vector<Particle> all_;  ///< filled where a point is far from every particle: seeding again is slow
 };
 
-/// The cofactor matrix of F, row-major: what it makes of an area vector is that of the deformed body.
-std::array<double, 9> cofactor(int dimension, const std::array<double, 9>& F) {
-  if (dimension == 2) return {F[3], -F[2], -F[1], F[0]};
-  std::array<double, 9> C{};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-      C[3 * i + j] = F[3 * a + c] * F[3 * b + d] - F[3 * a + d] * F[3 * b + c];
-    }
-  return C;
-}
-
-bool finite(const Vector3& v) {
-  return std::all_of(v.begin(), v.end(), [](double component) { return std::isfinite(component); });
-}
-
-Vector3 product(int D, const std::array<double, 9>& A, const Vector3& v) {
-  Vector3 result{};
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j) result[i] += A[D * i + j] * v[j];
-  return result;
-}
-
 }  // namespace
 
 BodyLoads::BodyLoads(const Experiment& experiment, int body, const SeededBody& seeds)
@@ -103,6 +80,11 @@ BodyLoads::BodyLoads(const Experiment& experiment, int body, const SeededBody& s
   for (const Load& load : experiment.loads)
     if (load.body == body && load.gives(ExternalForce::body_force)) accelerations_.push_back({&load.value, &load});
   if (!experiment.loaded_at_points(body).empty()) take_shares(seeds);
+}
+
+bool BodyLoads::holds(const Vector3& values) const {
+  return std::all_of(values.begin(), values.end(),
+                     [&](double value) { return mpm::holds(experiment_.precision, value); });
 }
 
 bool BodyLoads::any() const {
@@ -173,7 +155,7 @@ Vector3 BodyLoads::acceleration(std::size_t id, const Vector3& x, const Vector3&
   Vector3 sum{};
   for (const PerMass& force : accelerations_) {
     const Vector3 value = (*force.expression)(x, X, time);
-    if (!finite(value)) failures.note(force_failure(experiment_, force.load, body_, id, x, X, time));
+    if (!holds(value)) failures.note(force_failure(experiment_, force.load, body_, id, x, X, time));
     for (int c = 0; c < dimension_; ++c) sum[c] += value[c];
   }
   return sum;
@@ -203,7 +185,7 @@ void BodyLoads::accelerations(std::size_t count, const std::int32_t* ids, const 
       if (at.x[c]) x[c] = at.x[c][p];
       if (at.X[c]) X[c] = at.X[c][p];
     }
-    if (!finite(sum)) note_acceleration(static_cast<std::size_t>(ids[p]), x, X, time, failures);
+    if (!holds(sum)) note_acceleration(static_cast<std::size_t>(ids[p]), x, X, time, failures);
   }
 }
 
@@ -231,60 +213,50 @@ bool BodyLoads::carries(ExternalForce force, std::size_t id) const {
   return false;
 }
 
+template <int D>
 LoadCoefficients BodyLoads::coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle,
                                          double time, FirstFailure& failures) const {
-  const int D = dimension_;
-  LoadCoefficients sum;
+  const auto vector = [](const Vector3& values) {
+    Vec<D, double> v;
+    std::copy_n(values.begin(), D, v.v);
+    return v;
+  };
+  const Vec<D, double> x = vector(particle.x), X = vector(particle.X), v = vector(particle.v);
+  Mat<D, double> F;
+  std::copy_n(particle.F.begin(), D * D, F.m);
+  GivenByLoads<D, double> sum;
   for (std::uint32_t k = first_[id]; k < first_[id + 1]; ++k) {
     const Share& share = shares_[k];
     const Load& load = experiment_.loads[share.load];
     if (!load.gives(force)) continue;
-    const Vector3 way = product(D, particle.F, share.first);  // of r over the measure
-    Vector3 place = particle.x, initial = particle.X;
-    for (int c = 0; c < D; ++c) place[c] += way[c] / share.measure, initial[c] += share.first[c] / share.measure;
-    Vector3 value{};
+    const SharePlace<D, double> place(share, x, X, F);
+    Vec<D, double> value{};
     if (load.type != LoadType::spring) {
-      value = load.value(place, initial, time);
-      if (!finite(value)) failures.note(force_failure(experiment_, &load, body_, id, place, initial, time));
-      if (load.type == LoadType::pressure) {
-        add_pressure(share, particle, value[0], load.follower, sum);
-        continue;
-      }
+      Vector3 here{}, start = particle.X;
+      std::copy_n(place.x.v, D, here.begin());
+      std::copy_n(place.X.v, D, start.begin());
+      const Vector3 given = load.value(here, start, time);
+      if (!holds(given)) failures.note(force_failure(experiment_, &load, body_, id, here, start, time));
+      value = vector(given);
     }
     for (int c = 0; c < D; ++c) {
-      if (force == ExternalForce::spring) value[c] = -load.stiffness[c] * (place[c] - initial[c]);
-      if (force == ExternalForce::dashpot) value[c] = -load.damping[c] * particle.v[c];
-      sum.b[c] += share.measure * value[c];
-      for (int j = 0; j < D; ++j) sum.S[D * c + j] += value[c] * way[j];
+      if (force == ExternalForce::spring) value[c] = -load.stiffness[c] * (place.x[c] - place.X[c]);
+      if (force == ExternalForce::dashpot) value[c] = -load.damping[c] * v[c];
     }
+    if (load.type == LoadType::pressure)
+      add_pressure(share, place, x, F, value[0], load.follower, load.follower && experiment_.axisymmetric(), sum);
+    else
+      add_force(share, place, value, sum);
   }
-  return sum;
+  LoadCoefficients coefficients;
+  std::copy_n(sum.b.v, D, coefficients.b.begin());
+  std::copy_n(sum.S.m, D * D, coefficients.S.begin());
+  return coefficients;
 }
 
-/// Adds -p times the integrals of n and of n (x) r. A ring's area grows as its radius does: about an axis those of a
-/// follower are over the section, and each point has its own radius.
-void BodyLoads::add_pressure(const Share& share, const LoadedParticle& particle, double pressure, bool follower,
-                             LoadCoefficients& sum) const {
-  const int D = dimension_;
-  const std::array<double, 9> C = follower ? cofactor(D, particle.F) : std::array<double, 9>{};
-  const Vector3 area = follower ? product(D, C, share.area) : share.area;
-  std::array<double, 9> turned = share.area_moment, moment{};
-  if (follower) {
-    turned = {};
-    for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j)
-        for (int k = 0; k < D; ++k) turned[D * i + j] += C[D * i + k] * share.area_moment[D * k + j];
-  }
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j)
-      for (int k = 0; k < D; ++k) moment[D * i + j] += turned[D * i + k] * particle.F[D * j + k];
-  const bool rings = follower && experiment_.axisymmetric();
-  const double radius = particle.x[0];
-  const double of_centre = radius + product(D, particle.F, share.first)[0] / share.measure;
-  for (int i = 0; i < D; ++i) {
-    sum.b[i] -= pressure * (rings ? 2 * pi * (radius * area[i] + moment[D * i]) : area[i]);
-    for (int j = 0; j < D; ++j) sum.S[D * i + j] -= pressure * (rings ? 2 * pi * of_centre : 1.0) * moment[D * i + j];
-  }
-}
+template LoadCoefficients BodyLoads::coefficients<2>(ExternalForce, std::size_t, const LoadedParticle&, double,
+                                                     FirstFailure&) const;
+template LoadCoefficients BodyLoads::coefficients<3>(ExternalForce, std::size_t, const LoadedParticle&, double,
+                                                     FirstFailure&) const;
 
 }  // namespace mpm

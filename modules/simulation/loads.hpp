@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "operators/loads.hpp"
 #include "simulation/backend.hpp"
 #include "simulation/failure.hpp"
 
@@ -57,6 +58,11 @@ class BodyLoads {
   /// Notes which formulas give a particle no finite acceleration, the first one where that does not show.
   void note_acceleration(std::size_t id, const Vector3& x, const Vector3& X, double time, FirstFailure& failures) const;
 
+  /// What particles carry of loads at points: those of the particle with the index `id` of seeding are
+  /// shares()[first_shares()[id]] to shares()[first_shares()[id + 1]]. Both are empty where nothing acts at points.
+  const std::vector<LoadShare<double>>& shares() const { return shares_; }
+  const std::vector<std::uint32_t>& first_shares() const { return first_; }
+
   /// Evaluates a kind of force that acts at points, at the time of a step's begin: calls give(p, coefficients) for those
   /// of `count` particles that carry some, after read(p, particle) has filled the particle, and notes those whose load is
   /// not finite. ids[p] is the index of seeding, or p itself where ids is null. Returns whether any carries some.
@@ -69,32 +75,26 @@ class BodyLoads {
       if (!carries(force, id)) continue;
       LoadedParticle particle;
       read(p, particle);
-      give(p, coefficients(force, id, particle, time, failures));
+      give(p, dimension_ == 2 ? coefficients<2>(force, id, particle, time, failures)
+                              : coefficients<3>(force, id, particle, time, failures));
       any = true;
     }
     return any;
   }
 
  private:
-  /// What a particle carries of one load: integrals over the pieces of the surface, or of the line, that are nearest to
-  /// it. In axisymmetric scenes they are over the whole ring, but those of normals over its section.
-  struct Share {
-    int load = 0;
-    double measure = 0;                   ///< area, length or, of a point, 1
-    Vector3 first{};                      ///< of r0 over the measure
-    Vector3 area{};                       ///< of the normal over the area, of pressures
-    std::array<double, 9> area_moment{};  ///< of N (x) r0 over the area, row-major with the dimension
-  };
+  using Share = LoadShare<double>;
   /// A force per mass; `load` is null for that of the whole scene.
   struct PerMass {
     const VectorExpression* expression;
     const Load* load;
   };
+  /// Whether all values are numbers that the scene's precision holds.
+  bool holds(const Vector3& values) const;
   bool carries(ExternalForce force, std::size_t id) const;
+  template <int D>
   LoadCoefficients coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle, double time,
                                 FirstFailure& failures) const;
-  void add_pressure(const Share& share, const LoadedParticle& particle, double pressure, bool follower,
-                    LoadCoefficients& sum) const;
   void take_shares(const SeededBody& seeds);
   Surface pieces_of(const Load& load) const;
 

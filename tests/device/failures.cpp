@@ -7,6 +7,7 @@
 #include "simulation/offers_totals.hpp"
 
 using namespace mpm;
+using namespace std::string_literals;
 using namespace mpm::test;
 
 namespace {
@@ -208,6 +209,52 @@ TEST_CASE("a device in float names the grip that is told more than its range hol
     CHECK(std::count(words.begin() + static_cast<long>(words.find('(')), words.end(), ',') == dimension - 1);
     CHECK(words.ends_with(") m"));
   }
+}
+
+TEST_CASE("every backend in float names the load that is more than its range holds, and its axis",
+          "[device][failure]") {
+  const std::string edge = R"J("where": {"type": "half_space", "point": [0.31, 0], "normal": [1, 0]}, )J";
+  const std::string large = R"J("if(t > 0.03, 1e39, x)")J";
+  for (const auto& [load, wanted] :
+       {std::pair(R"J("type": "force", "at": [0.31, 0.43], "force": [1, "if(t > 0.03, -1e39, 1)"])J"s, "force/1"s),
+        std::pair(R"("type": "traction", )" + edge + "\"traction\": [" + large + ", 2]", "traction/0"s),
+        std::pair(R"("type": "pressure", )" + edge + "\"pressure\": " + large, "pressure"s),
+        std::pair(R"("type": "body_force", "acceleration": [1, )" + large + "]", "acceleration/1"s)}) {
+    INFO(load);
+    Mix mix;
+    mix.more = R"(, "loads": [{"body": "a", )" + load + "}]";
+    DeviceScene device(mix.text(), "float");
+    Scene cpu(mix.text(), {"/backend=cpu", "/precision=float"});
+    const std::optional<Stop> found = stop_of(device), other = stop_of(cpu);
+    REQUIRE(found);
+    REQUIRE(other);
+    CHECK(found->step == other->step);
+    CHECK_THAT(found->failure.formula, ContainsSubstring("/loads/0/" + wanted + ": is not a finite number at t = 0.0"));
+    CHECK(std::isinf(found->failure.value));
+    CHECK(std::signbit(found->failure.value) == (wanted == "force/1"));
+    CHECK(other->failure.formula == found->failure.formula);
+    CHECK(other->failure.particle == found->failure.particle);
+    CHECK(other->text == found->text);
+  }
+}
+
+TEST_CASE("a device names the load that is no number in float alone, and the particle", "[device][failure]") {
+  // The difference loses what float cannot hold of x, and leaves a number above zero in double precision alone.
+  const std::string root =
+      R"J(, "loads": [{"type": "spring", "body": "a", "where": {"type": "half_space", "point": [0.31, 0],
+    "normal": [1, 0]}, "stiffness": [1, 1]}, {"type": "pressure", "body": "a", "where": {"type": "half_space",
+    "point": [0.31, 0], "normal": [1, 0]}, "pressure": "sqrt((y+1e4)-1e4-y+1e-6)"}])J";
+  Mix mix;
+  mix.more = root;
+  DeviceScene in_double(mix.text(), "double"), in_float(mix.text(), "float");
+  CHECK_FALSE(stop_of(in_double));
+  const std::optional<Stop> found = stop_of(in_float);
+  REQUIRE(found);
+  CHECK(found->step == 0);
+  CHECK_THAT(found->failure.formula, ContainsSubstring("/loads/1/pressure: is not a finite number at t = 0 s"));
+  CHECK(std::isnan(found->failure.value));
+  const double y = in_float.simulation.backend().body_state(0).position[2 * found->failure.particle + 1];
+  CHECK(y > 0.2);
 }
 
 TEST_CASE("every backend names the axis along which a step goes beyond all numbers", "[device][failure]") {

@@ -95,10 +95,14 @@ TEST_CASE("the host waits for the device once a step, and not at all within one"
   }
 }
 
-TEST_CASE("formulas of forces by mass and of grips are evaluated without the host, in graphs too", "[device][graphs]") {
+TEST_CASE("formulas of loads and of grips are evaluated without the host, in graphs too", "[device][graphs]") {
   for (const std::string& setting :
        {set("/body_force", R"(["x", 0])"), set("/body_force", R"J(["0.1*t", "X+sin(9*t*y)"])J"),
         std::string(R"(/loads=[{"type": "body_force", "body": "b", "acceleration": ["0.1*t-X", 0]}])"),
+        std::string(R"(/loads=[{"type": "force", "body": "a", "at": [0.31, 0.43], "force": ["5*t", 2]}])"),
+        std::string(R"J(/loads=[{"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0],
+            "normal": [1, 0]}, "stiffness": [2e3, 1e3], "damping": [50, 100]}, {"type": "pressure", "body": "a",
+            "where": {"type": "half_space", "point": [0.31, 0], "normal": [1, 0]}, "pressure": "400+sin(9*t)*X"}])J"),
         std::string(R"J(/grips=[{"body": "a", "velocity": ["1.2+t-0.9*(Y-0.4)", null],
             "where": {"type": "half_space", "point": [0.22, 0], "normal": [1, 0]}}])J")}) {
     INFO(setting);
@@ -109,10 +113,9 @@ TEST_CASE("formulas of forces by mass and of grips are evaluated without the hos
   }
 }
 
-TEST_CASE("the host waits within a step where contact looks at particles, or loads act at points", "[device][graphs]") {
+TEST_CASE("the host waits within a step where contact looks at particles", "[device][graphs]") {
   for (const std::string& setting :
-       {set("/contact/normal", "\"widest_gap\""), set("/contact/detection", "\"particle_surfaces\""),
-        std::string(R"(/loads=[{"type": "force", "body": "a", "at": [0.31, 0.43], "force": [5, 2]}])")}) {
+       {set("/contact/normal", "\"widest_gap\""), set("/contact/detection", "\"particle_surfaces\"")}) {
     INFO(setting);
     const Run found = run(touching().text(), true, {setting});
     CHECK(found.synchronisations >= 2 * found.steps);

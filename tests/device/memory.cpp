@@ -64,10 +64,11 @@ std::map<std::string, double> counted_by_name(const Experiment& experiment, cons
   std::map<std::string, double> counted;
   for (const device::TakenMemory& taken : device::taken_memory(experiment, make_plan(experiment), size)) {
     const bool of_blocks = taken.field == "blocks" || taken.field == "tables of blocks";
-    const std::string name =
-        taken.body >= 0 ? (of_blocks ? "the blocks of " : "the particles of ") + experiment.bodies[taken.body].name
-        : apart.count(taken.field) ? apart.at(taken.field)
-                                   : "the nodes";
+    const bool of_loads = taken.field == "loads" || taken.field == "shares of loads";
+    const char* const what = of_blocks ? "the blocks of " : of_loads ? "the loads of " : "the particles of ";
+    const std::string name = taken.body >= 0            ? what + experiment.bodies[taken.body].name
+                             : apart.count(taken.field) ? apart.at(taken.field)
+                                                        : "the nodes";
     counted[name] += taken.bytes;
   }
   return counted;
@@ -103,13 +104,15 @@ TEST_CASE("every array of a device is counted before a run begins as the driver 
   for (const std::string precision : {"double", "float"}) {
     const Experiment experiment =
         three_bodies(precision, {deterministic_sums, R"J(/body_force=["x", "2+t"])J",
+                                 R"(/loads=[{"type": "force", "body": "a", "at": [0.31, 0.33], "force": [5, 2]}])",
                                  R"J(/rigid_bodies=[{"name": "floor", "contact": {"type": "frictionless"},
                         "geometry": {"type": "half_space", "point": [0, 0.15], "normal": [0, 1]}}])J"});
     const std::map<std::string, double> asked = asked_by_name(experiment);
     const Simulation simulation(experiment, device_factory());
-    const device::SceneSize size = scene_size(experiment, simulation.backend());
+    device::SceneSize size = scene_size(experiment, simulation.backend());
+    size.load_shares = {1, 0, 0};  // one particle is nearest to the point
     const std::map<std::string, double> counted = counted_by_name(experiment, size);
-    CHECK(counted.size() == 13);
+    CHECK(counted.size() == 14);
     for (auto [name, bytes] : counted) {
       INFO(name << ", " << precision);
       if (name == "exact sums") bytes += 9 * 4;  // beside them stands the largest exponent of each channel
@@ -163,14 +166,21 @@ TEST_CASE("what a particle and a node take on a device is as a hand counts it", 
   CHECK(named(device::taken_by_one(heated, make_plan(heated)), "exact sums").components == 2 * 6);
 }
 
-TEST_CASE("what a load asks a particle to keep is as a hand counts it", "[device][memory]") {
+TEST_CASE("what a load asks a run to keep is as a hand counts it", "[device][memory]") {
   const Experiment pushed = three_bodies(
       "double",
       {R"J(/body_force=["X", 0])J", R"(/loads=[{"type": "force", "body": "a", "at": [0.3, 0.3], "force": [5, 2]}])"});
   const std::vector<device::TakenMemory> taken = device::taken_by_one(pushed, make_plan(pushed));
   CHECK_FALSE(named(taken, "initial_position").working);
-  CHECK(named(taken, "load_force").components == 2);
-  CHECK(named(taken, "load_moment").components == 2 * 2);
+  // Where each particle's shares begin, of the body that carries some, and a share of 4 + 8 * 16 bytes and its alignment.
+  std::vector<int> loaded;
+  for (const device::TakenMemory& field : taken)
+    if (field.field == "loads") loaded.push_back(field.body);
+  CHECK(loaded == std::vector<int>{0});
+  CHECK(named(taken, "loads").bytes == 4);
+  const auto all = device::taken_memory(pushed, make_plan(pushed), {{9, 9, 9}, 100, 1, 1, {3, 0, 0}});
+  CHECK(named(all, "shares of loads").bytes == 3 * 136 + 4);  // and where the last ones end
+  CHECK(named(all, "loads").bytes == 9 * 4);
   // The fluid does not keep how it is deformed for itself, and the bodies without a load have the field as well.
   std::vector<int> of_deformation;
   for (const device::TakenMemory& field : taken)

@@ -204,7 +204,7 @@ bool has_body_force(const Choice& choice) {
 
 /// Whether anything acts on bodies at points.
 bool has_loads(const Choice& choice) {
-  return number_of(choice.particle_fields, "load_force") >= 0;
+  return choice.loads_at_points;
 }
 
 /// Whether the filter ever projects.
@@ -387,6 +387,7 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.deterministic = sums_deterministically(experiment);
   choice.contact_by_particles = ContactPoints(experiment).needed();
   choice.notes_contact = records_nodes(experiment);
+  choice.loads_at_points = !experiment.loaded_at_points().empty();
   choice.formulas = ParticleFormulas(experiment).text();
   choice.node_fields = node_fields(experiment, plan);
   choice.particle_fields = particle_fields(experiment, plan, 0);

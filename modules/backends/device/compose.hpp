@@ -27,6 +27,7 @@ struct Choice {
   bool deterministic = false;                       ///< scatters sum to the same bits in any order of lanes
   bool contact_by_particles = false;                ///< the host finds how fields meet (contact_pairs.hpp)
   bool notes_contact = false;                       ///< what contact does at single nodes is written down
+  bool loads_at_points = false;                     ///< particles carry loads that act beside them
   bool reactions = false;                           ///< what supports give is summed
   Advance advance = Advance::apart;                 ///< how particles go from one scatter to the next
   int basis_order = 0;                              ///< as in Plan

@@ -9,6 +9,7 @@
 
 #include "backends/device/field_arrays.hpp"
 #include "backends/device/kernels/arrays.hpp"  // load_corners
+#include "backends/device/load_arrays.hpp"
 #include "backends/device/sorting.hpp"
 #include "kernel/corner_domain.hpp"
 #include "simulation/backend.hpp"
@@ -29,16 +30,18 @@ struct Body {
   std::vector<double> initial_position;               ///< particle-major; empty unless planned
   DeviceArray<double> parameters, melted_parameters;  ///< of all particles, and of the melted ones where it melts
   Blocks blocks;
+  CarriedLoads<T> carried;
 
   /// `scene` holds cells and padding.
   Body(Device& device, const Experiment& experiment, const Plan& plan, const Arguments<T>& scene, int index,
-       const SeededBody& seeded)
+       const SeededBody& seeded, const BodyLoads& loads)
       : dimension(experiment.dimension),
         arrays(device, "the particles of " + experiment.bodies[index].name, particle_fields(experiment, plan, index),
                seeded.count()),
         parameters(device, "the parameters of a material"),
         melted_parameters(device, "the parameters of a melted material"),
-        blocks(device, experiment.bodies[index].name, scene, experiment.dimension, seeded.count()) {
+        blocks(device, experiment.bodies[index].name, scene, experiment.dimension, seeded.count()),
+        carried(device, experiment.bodies[index].name, loads) {
     const BodySpecification& body = experiment.bodies[index];
     number_of_body = index, frozen = body.frozen;
     material = &experiment.materials[body.material].component;
@@ -129,7 +132,8 @@ struct Body {
   }
 
   ParticleArrays<T> table() const {
-    ParticleArrays<T> table{count, count, mass, volume, half_size, number_of_body, frozen ? 1 : 0, {}, heat, viscosity};
+    ParticleArrays<T> table{count,          count, mass, volume,    half_size,      number_of_body,
+                            frozen ? 1 : 0, {},    heat, viscosity, carried.table()};
     arrays.point(table.field);
     return table;
   }

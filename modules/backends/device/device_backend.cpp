@@ -38,10 +38,19 @@ Arguments<T> described(const Experiment& experiment) {
 constexpr int teams_of_multiprocessor = 32;
 
 template <class T>
-SceneSize size_of(const Arguments<T>& scene, int dimension, const std::vector<SeededBody>& seeded, int lanes) {
+SceneSize size_of(const Arguments<T>& scene, int dimension, const std::vector<SeededBody>& seeded,
+                  const std::vector<BodyLoads>& loads, int lanes) {
   SceneSize size{{}, static_cast<std::size_t>(scene.node_count), table_of_blocks(scene, dimension).table, lanes};
   for (const SeededBody& body : seeded) size.particles.push_back(body.count());
+  for (const BodyLoads& of_body : loads) size.load_shares.push_back(of_body.shares().size());
   return size;
+}
+
+std::vector<BodyLoads> loads_of_bodies(const Experiment& experiment, const std::vector<SeededBody>& seeded) {
+  std::vector<BodyLoads> loads;
+  for (std::size_t body = 0; body < seeded.size(); ++body)
+    loads.emplace_back(experiment, static_cast<int>(body), seeded[body]);
+  return loads;
 }
 
 /// Opens the device, unless it has too little memory free.
@@ -69,7 +78,8 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
     : experiment_(experiment),
       plan_(plan),
       scene_(described<T>(experiment)),
-      device_(open(setup, experiment, plan, size_of(scene_, experiment.dimension, seeded, setup.lanes))),
+      loads_(loads_of_bodies(experiment, seeded)),
+      device_(open(setup, experiment, plan, size_of(scene_, experiment.dimension, seeded, loads_, setup.lanes))),
       lanes_(setup.lanes),
       teams_(setup.teams > 0 ? setup.teams : teams_of_multiprocessor * device_->multiprocessors()),
       shape_parameters_(*device_, "the shape's parameters"),
@@ -86,6 +96,7 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
       results_(*device_),
       formulas_(*device_, experiment, scene_),
       conditions_(*device_, experiment, scene_),
+      load_laws_(*device_, "the loads"),
       merges_(!plan.node_field("force")),
       edges_(*device_, experiment),
       contact_impulse_(experiment),
@@ -109,6 +120,8 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   if (experiment.contact_normal) scene_.normal_parameters = give(normal_parameters_, *experiment.contact_normal);
   if (experiment.contact_detection)
     scene_.detection_parameters = give(detection_parameters_, *experiment.contact_detection);
+  load_laws_.upload(laws_of_loads<T>(experiment));
+  scene_.load_laws = load_laws_.data();
   scene_.stop = results_.stop();
   if (deterministic_) {
     const auto channels = static_cast<std::size_t>(most_channels(choice));
@@ -124,12 +137,11 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
                         static_cast<std::size_t>(experiment.dimension + 1) * static_cast<std::size_t>(nodes()));
   if (experiment.has_temperature()) heat_conditions_.emplace(*device_, experiment, scene_);
   for (std::size_t body = 0; body < seeded.size(); ++body) {
-    bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body]);
-    loads_.emplace_back(experiment, static_cast<int>(body), seeded[body]);
+    bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body], loads_[body]);
   }
   for (int field = 0; field < experiment.field_count; ++field)
     fields_.emplace_back(*device_, experiment, plan, static_cast<std::size_t>(scene_.node_count));
-  partial_sums_.resize(room_for_sums(size_of(scene_, experiment.dimension, seeded, lanes_)));
+  partial_sums_.resize(room_for_sums(size_of(scene_, experiment.dimension, seeded, loads_, lanes_)));
   last_pass_ = last_pass_of(plan.step);
   scene_.partial_sums = partial_sums_.data();
   for (int axis = 0; axis < experiment.dimension; ++axis) (periodic(axis) ? images_ : walls_).push_back(axis);

@@ -1,7 +1,7 @@
 #pragma once
 // The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
 // libcuda's, or the host's. Particles and nodes stay on the device. Once a step the host takes what phases have
-// summed; it evaluates loads at points, walls and boxes, and reads particles in a step for the first of these alone.
+// summed; it evaluates walls and boxes, and reads particles in a step where contact looks at them or rigid bodies move.
 
 #include <array>
 #include <memory>
@@ -35,7 +35,7 @@ struct Manner {
 };
 
 /// The reasons for which a phase reports particles.
-enum class Checks { stencil, force, grip, temperature, deformation, position };
+enum class Checks { stencil, force, load, grip, temperature, deformation, position };
 
 /// The part of contact that goes to the ledger and to the record.
 enum class Recorded { nothing, before_forces, after_forces, filter };
@@ -162,14 +162,15 @@ class DeviceBackend final : public Backend, public OffersTotals {
   [[noreturn]] void refuse_told(const Body<T>& body, int p) const;
   /// Sums what grips gave a body's particles in the gather, and its energy, J.
   void note_gripped(const Body<T>& body, const StepInfo& step, const Tally<1>& energy);
-  /// Scatters each kind of load of a body into its own field: those by its mass as a kernel finds them, and those at
-  /// points as the host does. Throws RunFailure where one of these is not finite.
-  void scatter_loads(Body<T>& body, Arguments<T> a, double time);
-  void evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time, FirstFailure& failures);
+  /// Scatters each kind of load of a body into its own field.
+  void scatter_loads(const Body<T>& body, Arguments<T> a);
   const BodyLoads& loads_of(const Body<T>& body) const { return loads_[static_cast<std::size_t>(body.number_of_body)]; }
-  /// Returns the first load of a body that is not finite, after a kernel has found the force by mass on a particle to be
-  /// none.
+  /// Returns the first of all loads of a body that is not finite, after a kernel has found that the force by mass on a
+  /// particle is not. Loads at points are looked at too: they are scattered after those by mass.
   Failure failed_force(const Body<T>& body, int p) const;
+  /// Returns the first load at points of a body that is not finite, after a kernel has found that one of a particle's is not.
+  Failure failed_load(const Body<T>& body, int p) const;
+  void note_loads(const Body<T>& body, FirstFailure& failures) const;
 
   // ---- conditions.cpp: from momenta to velocities, and what supports give
   void momentum_to_velocity(const Pass& pass, const StepInfo& step);
@@ -309,6 +310,7 @@ class DeviceBackend final : public Backend, public OffersTotals {
   const Experiment& experiment_;
   const Plan& plan_;
   Arguments<T> scene_;              ///< what all launches share; its pointers are the device's
+  std::vector<BodyLoads> loads_;    ///< of each body
   std::unique_ptr<Device> device_;  ///< outlives the arrays on it
   int lanes_, teams_;               ///< of a team, and at work on blocks at once
   DeviceArray<double> shape_parameters_, transfer_parameters_, filter_parameters_, contact_parameters_,
@@ -326,7 +328,7 @@ class DeviceBackend final : public Backend, public OffersTotals {
   Conditions<T> conditions_;
   std::optional<HeatConditions<T>> heat_conditions_;  ///< empty in scenes without temperature
   std::vector<Body<T>> bodies_;
-  std::vector<BodyLoads> loads_;  ///< of each body
+  DeviceArray<LoadLaw<T>> load_laws_;
   std::vector<VelocityField<T>> fields_;
   std::vector<int> images_, walls_;  ///< axes with periodic images, and those with walls
   bool merges_;                      ///< momenta are scattered with what forces add to them in the step

@@ -63,7 +63,6 @@ std::vector<Field> particle_fields(const Experiment& experiment, const Plan& pla
   if (!experiment.grips.empty())
     for (const char* id : {"told_velocity", "gathered_velocity"}) work(id, "m/s", D);
   const bool loaded = !experiment.loaded_at_points().empty();
-  if (loaded) work("load_force", "N", D), work("load_moment", "N m", D * D);
   // All bodies have the same numbers, those too that no formula or load needs these of.
   if (plan.node_field("mass_displacement") || ParticleFormulas(experiment).use_initial_position()) {
     if (const Field* const start = plan.particle_field(body, "initial_position"))

@@ -149,6 +149,7 @@ void DeviceBackend<T>::look() {
                    : checks == Checks::deformation ? failed_deformation(body, particle)
                    : checks == Checks::position    ? failed_position(body, particle)
                    : checks == Checks::force       ? failed_force(body, particle)
+                   : checks == Checks::load        ? failed_load(body, particle)
                                                    : failed_stencil(body, particle));
 }
 

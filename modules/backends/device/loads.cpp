@@ -83,51 +83,54 @@ void DeviceBackend<T>::note_gripped(const Body<T>& body, const StepInfo& step, c
 }
 
 template <class T>
-void DeviceBackend<T>::scatter_loads(Body<T>& body, Arguments<T> a, double time) {
+void DeviceBackend<T>::scatter_loads(const Body<T>& body, Arguments<T> a) {
   const BodyLoads& loads = loads_of(body);
-  if (loads.gives(ExternalForce::body_force)) run_blocks("scatter_body_force", a, body, Checks::force);
-  FirstFailure failures;
   for (const ExternalForce kind : external_forces) {
-    if (kind == ExternalForce::body_force || !loads.gives(kind)) continue;
-    look();  // a particle that has failed has no place to evaluate formulas at
-    evaluate_loads(body, loads, kind, time, failures);
+    if (!loads.gives(kind)) continue;
+    if (kind == ExternalForce::body_force) {
+      run_blocks("scatter_body_force", a, body, Checks::force);
+      continue;
+    }
     a.load_field = number_of(fields_[body.field].arrays.fields(), field_of(kind));
-    run_blocks("scatter_load", a, body);
+    a.load_kind = static_cast<int>(kind), a.dashpots = kind == ExternalForce::dashpot;
+    run_blocks("scatter_load", a, body, Checks::load);
   }
-  failures.raise();
 }
 
-template <class T>
-void DeviceBackend<T>::evaluate_loads(Body<T>& body, const BodyLoads& loads, ExternalForce kind, double time,
-                                      FirstFailure& failures) {
-  const std::size_t D = experiment_.dimension, n = static_cast<std::size_t>(body.count);
-  const LoadedParticles<T> particles(body);
-  std::vector<T> force(D * n), moment(D * D * n);
-  const auto read = [&](int p, LoadedParticle& particle) { particles.read(p, particle); };
-  const auto give = [&](int p, const LoadCoefficients& given) {
-    for (std::size_t c = 0; c < D; ++c) force[c * n + p] = static_cast<T>(given.b[c]);
-    for (std::size_t k = 0; k < D * D; ++k) moment[k * n + p] = static_cast<T>(given.S[k]);
-  };
-  loads.evaluate(kind, body.count, nullptr, time, read, give, failures);
-  body.arrays.write("load_force", force), body.arrays.write("load_moment", moment);
-}
-
-/// Of all loads on a body that are not finite, the failure is that of the particle with the lowest index: loads at points are
-/// looked at too, as they are evaluated after those by mass.
 template <class T>
 Failure DeviceBackend<T>::failed_force(const Body<T>& body, int p) const {
-  const BodyLoads& loads = loads_of(body);
-  const LoadedParticles<T> particles(body);
   LoadedParticle failed;
-  particles.read(p, failed);
+  LoadedParticles<T>(body).read(p, failed);
   FirstFailure failures;
-  loads.note_acceleration(static_cast<std::size_t>(p), failed.x, failed.X, time_, failures);
-  for (const ExternalForce kind : external_forces)
-    if (kind != ExternalForce::body_force && loads.gives(kind))
-      loads.evaluate(
-          kind, body.count, nullptr, time_, [&](int k, LoadedParticle& particle) { particles.read(k, particle); },
-          [](int, const LoadCoefficients&) {}, failures);
+  loads_of(body).note_acceleration(static_cast<std::size_t>(p), failed.x, failed.X, time_, failures);
+  note_loads(body, failures);
   return *failures.first();
+}
+
+template <class T>
+Failure DeviceBackend<T>::failed_load(const Body<T>& body, int p) const {
+  FirstFailure failures;
+  note_loads(body, failures);
+  if (failures.first()) return *failures.first();
+  // The host finds numbers in double precision where a kernel in float does not.
+  const auto at = static_cast<std::size_t>(p);
+  const BodyLoads& loads = loads_of(body);
+  std::size_t share = loads.first_shares()[at];
+  while (experiment_.loads[loads.shares()[share].load].type == LoadType::spring) ++share;
+  LoadedParticle failed;
+  LoadedParticles<T>(body).read(p, failed);
+  return force_failure(experiment_, &experiment_.loads[loads.shares()[share].load], body.number_of_body, at, failed.x,
+                       failed.X, time_);
+}
+
+template <class T>
+void DeviceBackend<T>::note_loads(const Body<T>& body, FirstFailure& failures) const {
+  const LoadedParticles<T> particles(body);
+  const auto read = [&](int p, LoadedParticle& particle) { particles.read(p, particle); };
+  const auto give = [](int, const LoadCoefficients&) {};
+  for (const ExternalForce kind : external_forces)
+    if (kind != ExternalForce::body_force)
+      loads_of(body).evaluate(kind, body.count, nullptr, time_, read, give, failures);
 }
 
 template class DeviceBackend<float>;

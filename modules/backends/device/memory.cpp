@@ -8,6 +8,7 @@
 #include "backends/device/results.hpp"
 #include "backends/device/sorting.hpp"
 #include "experiment/device_settings.hpp"
+#include "operators/loads.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/contact_points.hpp"
 
@@ -16,6 +17,10 @@ namespace {
 
 double bytes_of_scalar(const Experiment& experiment) {
   return experiment.precision == Precision::single ? sizeof(float) : sizeof(double);
+}
+
+double bytes_of_share(const Experiment& experiment) {
+  return experiment.precision == Precision::single ? sizeof(LoadShare<float>) : sizeof(LoadShare<double>);
 }
 
 /// What grows with each particle and each node.
@@ -33,6 +38,8 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
     add(particle_fields(experiment, plan, static_cast<int>(body)), static_cast<int>(body), count);
     const BlockRoom room(0, particles[body]);
     all.push_back({"blocks", static_cast<int>(body), 2, static_cast<double>(room.of_particles) * sizeof(int), true});
+    if (!experiment.loaded_at_points(static_cast<int>(body)).empty())
+      all.push_back({"loads", static_cast<int>(body), 1, count * sizeof(int), false});
   }
   const double all_nodes = static_cast<double>(nodes) * experiment.field_count;
   add(node_fields(experiment, plan), TakenMemory::of_nodes, all_nodes);
@@ -68,6 +75,9 @@ std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& 
   for (std::size_t body = 0; body < size.particles.size(); ++body) {
     const BlockRoom room(size.blocks, size.particles[body]);
     const std::size_t ints = room.of_table + room.of_chunks + room.of_list + room.state;
+    if (!experiment.loaded_at_points(static_cast<int>(body)).empty() && !size.load_shares.empty())
+      all.push_back({"shares of loads", static_cast<int>(body), 1,
+                     static_cast<double>(size.load_shares[body]) * bytes_of_share(experiment) + sizeof(int), false});
     all.push_back({"tables of blocks", static_cast<int>(body), 1, static_cast<double>(ints) * sizeof(int), true});
   }
   const std::size_t runs = (size.nodes + nodes_of_run - 1) / nodes_of_run;

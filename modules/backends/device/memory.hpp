@@ -27,6 +27,8 @@ struct SceneSize {
   std::size_t nodes = 0;               ///< of the grid
   int blocks = 0;                      ///< of the grid, ghosts too (table_of_blocks)
   int lanes = 1;                       ///< of a team
+  std::vector<std::size_t>
+      load_shares{};  ///< of each body: what its particles carry of loads at points; empty for none
 };
 
 /// What one particle of each body and one node of the grid take, for all velocity fields.

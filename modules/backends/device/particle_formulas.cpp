@@ -136,8 +136,15 @@ std::vector<double> values_without_place(const std::vector<Term>& terms, double 
 
 ParticleFormulas::ParticleFormulas(const Experiment& experiment) : dimension_(experiment.dimension) {
   if (experiment.body_force) accelerations_.push_back({add(*experiment.body_force, false), all_bodies});
-  for (const Load& load : experiment.loads)
-    if (load.gives(ExternalForce::body_force)) accelerations_.push_back({add(load.value, false), load.body});
+  for (std::size_t k = 0; k < experiment.loads.size(); ++k) {
+    const Load& load = experiment.loads[k];
+    if (load.type == LoadType::spring)
+      use_initial_position_ = use_initial_position_ || load.gives(ExternalForce::spring);
+    else if (load.at_points())
+      values_.push_back({add(load.value, false), k});
+    else
+      accelerations_.push_back({add(load.value, false), load.body});
+  }
   for (const Grip& grip : experiment.grips) velocities_.push_back(add(grip.velocity, true));
 }
 
@@ -190,6 +197,10 @@ std::string ParticleFormulas::text() const {
       << parameters << "{\n";
   for (std::size_t grip = 0; grip < velocities_.size(); ++grip)
     out << "    if (grip == " << grip << ") return " << call_text(velocities_[grip]) << ";\n";
+  out << "    return {};\n  }\n  MPM_HD static " << vector << " load_value([[maybe_unused]] int load, " << parameters
+      << "{\n";
+  for (const Value& value : values_)
+    out << "    if (load == " << value.load << ") return " << call_text(value.call) << ";\n";
   out << "    return {};\n  }\n";
   return out.str();
 }

@@ -17,11 +17,11 @@ class ParticleFormulas {
   explicit ParticleFormulas(const Experiment& experiment);
 
   bool any() const { return !calls_.empty(); }
-  /// Whether any of them asks where a particle began.
+  /// Whether any of them asks where a particle began, or a spring does.
   bool use_initial_position() const { return use_initial_position_; }
   bool use_time() const { return use_time_; }
-  /// Static functions of the scene: acceleration(body, x, X, numbers) and velocity_of_grip(grip, x, X, numbers); empty
-  /// where there are no formulas.
+  /// Static functions of the scene: acceleration(body, x, X, numbers), velocity_of_grip(grip, x, X, numbers) and
+  /// load_value(load, x, X, numbers) of a load at points; empty where there are no formulas.
   std::string text() const;
   /// How many numbers the functions take.
   std::size_t count() const;
@@ -42,6 +42,10 @@ class ParticleFormulas {
     std::size_t call;
     int body;
   };
+  /// The value of a load at points.
+  struct Value {
+    std::size_t call, load;
+  };
   static constexpr int all_bodies = -1;
 
   /// Returns the number of the call.
@@ -55,6 +59,7 @@ class ParticleFormulas {
   std::vector<Call> calls_;
   std::vector<Acceleration> accelerations_;
   std::vector<std::size_t> velocities_;  ///< calls, of each grip
+  std::vector<Value> values_;
 };
 
 }  // namespace mpm::device

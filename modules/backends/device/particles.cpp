@@ -52,7 +52,7 @@ void DeviceBackend<T>::scatter(const Pass& pass, const StepInfo& step) {
     a.momentum = pass.has(Act::scatter_momentum), a.force = force;
     a.contact_fields = pass.has(Act::scatter_contact), a.remap = pass.remap();
     run_blocks("scatter", a, body);
-    if (force) scatter_loads(body, a, step.time);
+    if (force) scatter_loads(body, a);
     if (heat) run_blocks("scatter_heat", a, body);
     if (enters && !experiment_.grips.empty()) scatter_grips(body);
     if (heat && plan_.has_heat_ledger()) sum_over_particles("heat_of_particles", body, of_heat);

@@ -4,6 +4,7 @@
 
 #include "kernel/artificial_viscosity.hpp"
 #include "operators/contact_geometry.hpp"
+#include "operators/loads.hpp"
 
 namespace mpm::device {
 
@@ -33,6 +34,23 @@ struct HeatOfBody {
   T warming;                           ///< share of the dissipated energy that warms, over the density, m^3/kg
 };
 
+/// How a load acts on the share of it that a particle carries.
+enum LoadKind { load_of_force, load_of_pressure, load_of_follower, load_of_spring };
+
+template <class T>
+struct LoadLaw {
+  int type;   ///< LoadKind
+  int gives;  ///< bit k: it is of kind k (ExternalForce)
+  T stiffness[3], damping[3];
+};
+
+/// What the particles of one body carry of loads at points: particle p has the shares first[p] to first[p + 1].
+template <class T>
+struct LoadsOfBody {
+  const int* first;
+  const LoadShare<T>* shares;
+};
+
 /// The particles of one body and material.
 template <class T>
 struct ParticleArrays {
@@ -44,6 +62,7 @@ struct ParticleArrays {
   T* field[most_fields];  ///< numbered as Scene::Particle; the fields of one plugin's state lie one behind another
   HeatOfBody<T> heat;     ///< filled in scenes with temperature
   ArtificialViscosity<T> viscosity;  ///< filled where the material has any
+  LoadsOfBody<T> loads;              ///< null where nothing acts at points
 };
 
 /// The nodes under a condition: all between two corners.
@@ -132,9 +151,10 @@ struct Arguments {
   const T* wall_shares;             ///< shares of heat through a wall: that of its node, of the next one inward ...
   const HeatBox<T>* heat_boxes;
   int wall_share_count, heat_box_count;
-  const T* formula_numbers;  ///< what formulas at particles take, for the step's time (ParticleFormulas)
-  T strain_cap;              ///< of contact (experiment/contact_settings.hpp), 0 for none
-  T wall_beyond;             ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
+  const T* formula_numbers;     ///< what formulas at particles take, for the step's time (ParticleFormulas)
+  const LoadLaw<T>* load_laws;  ///< of each load of the experiment
+  T strain_cap;                 ///< of contact (experiment/contact_settings.hpp), 0 for none
+  T wall_beyond;  ///< m, how far the nodes beyond the wall make the temperature there differ (WallWeights)
   bool gravity_has_potential[3];
   // These are what this phase works on.
   ParticleArrays<T> particles;
@@ -160,7 +180,8 @@ struct Arguments {
   T local_damping, left_of_velocity, left_of_change;  ///< damp: see `damped`
   int axis;                                           ///< axis of folds and ghosts
   int iteration;                                      ///< number of the filter's pass, from 1
-  int load_field;                                     ///< field of nodes that a load goes to
+  int load_field, load_kind;                          ///< scatter_load: field of nodes, and kind of ExternalForce
+  bool dashpots;                                      ///< scatter_load: springs give their damping, not their stiffness
   int heat_box;                                       ///< number of the box that is warmed
   int mass_count;                                     ///< velocity fields that a box has mass in
   bool momentum, force, contact_fields;               /**< scatter: as in Pass */

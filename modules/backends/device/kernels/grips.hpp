@@ -1,6 +1,7 @@
 #pragma once
 // Lets nodes know of particles that a grip moves.
 
+#include "backends/device/kernels/formulas.hpp"
 #include "backends/device/kernels/scatter.hpp"
 #include "backends/device/kernels/sums.hpp"
 #include "operators/supports.hpp"

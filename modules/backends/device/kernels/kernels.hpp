@@ -14,6 +14,7 @@
 #include "backends/device/kernels/grips.hpp"
 #include "backends/device/kernels/heat.hpp"
 #include "backends/device/kernels/ledger.hpp"
+#include "backends/device/kernels/loads.hpp"
 #include "backends/device/kernels/material.hpp"
 #include "backends/device/kernels/rigid.hpp"
 #include "backends/device/kernels/scatter.hpp"

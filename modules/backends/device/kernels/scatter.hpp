@@ -2,7 +2,6 @@
 // Takes particles to the grid: a team sums a block's particles into a tile in shared memory, then adds it to the grid.
 
 #include "backends/device/kernels/exact_sums.hpp"
-#include "backends/device/kernels/formulas.hpp"
 #include "backends/device/kernels/higher.hpp"
 #include "operators/contact_geometry.hpp"
 
@@ -215,57 +214,6 @@ MPM_HD void scatter(const Team& team, const Arguments<typename Scene::Scalar>& a
           }
           if constexpr (Place::mass_position >= 0) values[Place::mass_position + i] = -mass * s.distance[i];
         }
-      }
-      add(s.node, values);
-    });
-  });
-}
-
-template <class Scene>
-inline constexpr int load_scalars = Scene::dimension* Tile<Scene::dimension>::nodes;
-
-/// Scatters w m a(x, X, t) of the forces per mass.
-template <class Scene>
-MPM_HD void scatter_body_force(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  using T = typename Scene::Scalar;
-  constexpr int D = Scene::dimension;
-  T* channel[D];
-  for (int c = 0; c < D; ++c) channel[c] = a.grid.field[Scene::Node::body_force] + c * a.node_count;
-  scatter_blocks<Scene, D>(team, a, channel, [&](int p, auto add) {
-    const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return;  // the scatter has reported it
-    const FormulaPlace<Scene> place(a.particles, p);
-    const Vec<D, T> pull = Scene::acceleration(a.particles.body, place.x, place.X, a.formula_numbers);
-    if (!all_finite(pull)) return report(a, p);
-    const T mass = of_size<Scene>(a.particles, a.particles.mass, p);
-    stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
-      T values[D];
-      for (int i = 0; i < D; ++i) values[i] = s.weight * (mass * pull[i]);
-      add(s.node, values);
-    });
-  });
-}
-
-/// Scatters w b + S grad w of a load, as the host evaluated it, to the field of nodes `a.load_field`.
-template <class Scene>
-MPM_HD void scatter_load(const Team& team, const Arguments<typename Scene::Scalar>& a) {
-  using T = typename Scene::Scalar;
-  using P = typename Scene::Particle;
-  constexpr int D = Scene::dimension;
-  T* channel[D];
-  for (int c = 0; c < D; ++c) channel[c] = a.grid.field[a.load_field] + c * a.node_count;
-  scatter_blocks<Scene, D>(team, a, channel, [&](int p, auto add) {
-    const Stencil<Scene> stencil(a, p);
-    if (!stencil.inside()) return report(a, p);
-    const int stride = a.particles.stride;
-    const Vec<D, T> b = load<D>(a.particles.field[P::load_force], stride, p);
-    Mat<D, T> S{};
-    if constexpr (P::load_moment >= 0) S = load_matrix<D>(a.particles.field[P::load_moment], stride, p);
-    stencil.for_each_node(a, [&](const StencilNode<D, T>& s) {
-      T values[D];
-      for (int i = 0; i < D; ++i) {
-        values[i] = s.weight * b[i];
-        for (int j = 0; j < D; ++j) values[i] += S(i, j) * s.gradient[j];
       }
       add(s.node, values);
     });
