@@ -308,6 +308,7 @@ struct OutputSpecification {
   std::vector<GroupSpecification> groups;
   std::vector<ProbeSpecification> probes;
   bool contact_pairs = false;  ///< contact has columns for each pair of fields
+  bool normal_error = false;   ///< pairs have columns for the error of their normals
   bool contact_nodes = false;  ///< the nodes where fields meet are drawn and written with each frame
 
   /// Whether a probe takes a quantity whose name begins so.

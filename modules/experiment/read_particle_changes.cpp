@@ -253,6 +253,8 @@ void ExperimentReader::check_particle_changes() {
                            " may change the particles after it, when nobody has looked yet; ";
   if (experiment_.output.contact_nodes)
     problem(nearest_node(root_, "/output/contact_nodes"), "the nodes of contact" + gone + "remove one of them");
+  if (experiment_.output.normal_error)
+    problem(nearest_node(root_, "/output/normal_error"), "the normals of contact" + gone + "remove one of them");
   if (experiment_.particle_output && experiment_.particle_output->asks("contact_traction"))
     problem(nearest_node(root_, "/output/particles"),
             "tractions of contact" + gone + "name \"fields\" without contact_traction");

@@ -189,6 +189,20 @@ void ExperimentReader::read_section(const Fields& fields, ProbeSpecification& pr
     problem(fields.place("normal"), "in an axisymmetric scene sections lie across the axis: give [0, 1] or [0, -1]");
 }
 
+void ExperimentReader::read_normal_error(const Fields& fields) {
+  experiment_.output.normal_error = fields.boolean("normal_error");
+  if (!experiment_.output.normal_error) return;
+  const auto refuse = [&](const std::string& why) { problem(fields.place("normal_error"), why); };
+  if (!experiment_.output.contact_pairs) refuse("its columns are those of pairs: set \"contact_pairs\" to true");
+  if (!experiment_.contact)
+    refuse("there are no such normals without \"contact\"; those of rigid bodies are exact");
+  else if (experiment_.contact->plugin && (experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION))
+    refuse("the contact law \"" + std::string(experiment_.contact->plugin->id()) + "\" has no normals");
+  for (int axis = 0; axis < context_.dimension; ++axis)
+    if (experiment_.faces[axis][0].type == ConditionType::periodic)
+      refuse("bodies are followed as wholes, and a periodic axis may take one apart: remove one of them");
+}
+
 void ExperimentReader::read_contact_nodes(const Fields& fields) {
   experiment_.output.contact_nodes = fields.boolean("contact_nodes");
   if (!experiment_.output.contact_nodes) return;
@@ -202,6 +216,7 @@ void ExperimentReader::read_records(const Fields& fields) {
   experiment_.output.contact_pairs = fields.boolean("contact_pairs");
   if (experiment_.output.contact_pairs && !experiment_.contact && experiment_.rigid_bodies.empty())
     problem(fields.place("contact_pairs"), "there are no pairs without \"contact\" or \"rigid_bodies\"");
+  read_normal_error(fields);
   read_contact_nodes(fields);
   if (fields.given("bodies")) resolved["bodies"] = read_recorded_bodies(*fields.node("bodies"));
   for (const char* key : {"groups", "probes"}) {

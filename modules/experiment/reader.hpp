@@ -36,6 +36,7 @@ class ExperimentReader {
   OrderedJson read_exact(const Node& node);
 
   // read_records.cpp
+  void read_normal_error(const Fields& fields);
   void read_contact_nodes(const Fields& fields);
   void read_records(const Fields& fields);
   OrderedJson read_recorded_bodies(const Node& node);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "metrics/normal_error.hpp"
 #include "metrics/probes.hpp"
 #include "metrics/rigid_gap.hpp"
 #include "simulation/contact_impulse.hpp"
@@ -92,7 +93,7 @@ std::vector<ChosenRow> ChosenNumbers::rows() const {
   Views views(simulation_);
   for (const Part& part : parts_) add_part(part, views, rows);
   for (const ProbeSpecification& probe : simulation_.experiment().output.probes) add_probe(probe, views, rows);
-  add_pairs(rows);
+  add_pairs(views, rows);
   if (simulation_.experiment().output.contact_pairs) add_rigid_gaps(views, rows);
   return rows;
 }
@@ -164,11 +165,14 @@ void ChosenNumbers::add_section(const ProbeSpecification& probe, Views& views, s
   add.components("moment", units.moment, sums.moment, first_spin, 3);
 }
 
-void ChosenNumbers::add_pairs(std::vector<ChosenRow>& rows) const {
+void ChosenNumbers::add_pairs(Views& views, std::vector<ChosenRow>& rows) const {
   const Experiment& experiment = simulation_.experiment();
   if (recorded_pairs(experiment) == 0) return;
   const RecordedUnits units = units_of(experiment);
   const int first = recorded_axes(experiment).linear;
+  const bool with_normals = experiment.output.normal_error;
+  const std::vector<NormalError> normals =
+      with_normals ? normal_errors(views, simulation_.backend().contact_nodes()) : std::vector<NormalError>();
   for (int a = 0; a < experiment.field_count; ++a)
     for (int b = a + 1; b < experiment.field_count; ++b) {
       const PairRecord& pair = simulation_.backend().contact_pairs()[pair_index(a, b, experiment.field_count)];
@@ -182,6 +186,11 @@ void ChosenNumbers::add_pairs(std::vector<ChosenRow>& rows) const {
       add("sticking nodes", "", static_cast<double>(pair.sticking));
       add("slipping nodes", "", static_cast<double>(pair.slipping));
       add("largest penetration", "m", pair.largest_penetration);
+      if (!with_normals) continue;
+      const NormalError& error = normals[pair_index(a, b, experiment.field_count)];
+      add("normal error", "deg", error.mean);
+      add("largest normal error", "deg", error.largest);
+      add("surface misfit", "m", error.misfit);
     }
 }
 

@@ -52,7 +52,7 @@ class ChosenNumbers {
   void add_part(const Part& part, Views& views, std::vector<ChosenRow>& rows) const;
   void add_probe(const ProbeSpecification& probe, Views& views, std::vector<ChosenRow>& rows) const;
   void add_section(const ProbeSpecification& probe, Views& views, std::vector<ChosenRow>& rows) const;
-  void add_pairs(std::vector<ChosenRow>& rows) const;
+  void add_pairs(Views& views, std::vector<ChosenRow>& rows) const;
   void add_rigid_gaps(Views& views, std::vector<ChosenRow>& rows) const;
 
   const Simulation& simulation_;

@@ -167,15 +167,16 @@ void output_fields(FieldList& fields, int body) {
   const bool file_asks = particles && (particles->asks("initial_position") || particles->asks("displacement"));
   const bool grip_asks = experiment.reads_initial_position();
   const bool colour_asks = experiment.output.colour_by.starts_with("displacement");
-  const bool springs_ask = experiment.has_compliant_contact();
+  const bool springs_ask = experiment.has_compliant_contact(), normals_ask = experiment.output.normal_error;
   if (!experiment.exact && force_asks.empty() && !springs_ask && !grip_asks && !file_asks && !colour_asks &&
-      !experiment.output.probes_take("displacement"))
+      !normals_ask && !experiment.output.probes_take("displacement"))
     return;
   const std::string because = experiment.exact      ? experiment.exact->pointer + ": errors are measured at X"
                               : !force_asks.empty() ? force_asks
                               : springs_ask         ? experiment.contact->pointer + ": its springs pull by x - X"
                               : grip_asks           ? "/grips: a velocity depends on X"
                               : file_asks           ? "/output/particles/fields: initial places are written"
+                              : normals_ask         ? "/output/normal_error: surfaces follow their particles from X"
                               : colour_asks         ? "/output/colour_by \"" + experiment.output.colour_by + "\""
                                                     : "/output/probes: a probe takes displacements";
   fields.of_particles(body, "initial_position", "m", experiment.dimension, First::seeded, because).lifetime =

@@ -80,7 +80,7 @@ struct ContactGiven {
 /// Whether a run records the nodes where fields meet, and whether it does in this step.
 inline bool records_nodes(const Experiment& experiment) {
   const bool for_particles = experiment.particle_output && experiment.particle_output->asks("contact_traction");
-  return experiment.contact && (experiment.output.contact_nodes || for_particles);
+  return experiment.contact && (experiment.output.contact_nodes || experiment.output.normal_error || for_particles);
 }
 inline bool records_nodes(const Experiment& experiment, const StepInfo& step) {
   return step.observed && records_nodes(experiment);

@@ -10,7 +10,7 @@ namespace {
 /// Two balls that meet, with everything that can be asked for.
 Json asking() {
   Json scene = two_balls();
-  scene["output"] = Json::parse(R"({"metrics_every": 3, "bodies": true, "contact_pairs": true,
+  scene["output"] = Json::parse(R"({"metrics_every": 3, "bodies": true, "contact_pairs": true, "normal_error": true,
     "groups": [{"name": "core", "body": "ball", "where": {"type": "ball", "centre": [0.3, 0.3], "radius": 0.1}}],
     "probes": [{"name": "tip", "quantities": ["velocity_x", "stress_xy"], "nearest": [0.4, 0.4]},
                {"name": "gap", "quantities": ["pressure"], "place": [0.45, 0.45]},
@@ -181,6 +181,17 @@ TEST_CASE("names that no record has are mistakes of the file, with place and nea
   scene = asking();
   scene["output"]["contact_nodes"] = true;
   CHECK(has(refusal(scene), "/output/contact_nodes: they are shown in frames: give \"frames\""));
+  scene = asking();
+  scene["output"]["contact_pairs"] = false;
+  CHECK(has(refusal(scene), "/output/normal_error: its columns are those of pairs: set \"contact_pairs\" to true"));
+  scene["output"]["contact_pairs"] = true, scene["contact"] = {{"type", "stick"}};
+  CHECK(has(refusal(scene), "/output/normal_error: the contact law \"stick\" has no normals"));
+  scene = asking();
+  scene["grid"]["boundaries"] = {{"all", "slip"}, {"x_min", "periodic"}, {"x_max", "periodic"}};
+  CHECK(has(refusal(scene),
+            "/output/normal_error: bodies are followed as wholes, and a periodic axis may take one apart"));
+  scene.erase("contact");
+  CHECK(has(refusal(scene), "/output/normal_error: there are no such normals without \"contact\""));
   scene = two_balls();
   scene["output"]["ledger"] = false;
   scene["figures"] = {{{"type", "columns"}, {"name", "energy"}, {"columns", {"total energy"}}}, "ledger"};

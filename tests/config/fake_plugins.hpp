@@ -29,15 +29,19 @@ inline const mpm_parameter iterations[] = {
 
 constexpr std::uint32_t every_precision = 7, both = MPM_2D | MPM_3D;
 
+inline const mpm_contact plain_law{};
+
 inline mpm_descriptor descriptor(const char* id, mpm_kind kind, std::uint32_t dimensions, std::uint32_t precisions,
                                  const mpm_parameter* parameters, std::uint32_t count) {
-  return {id,         "1.0.0",    "A test plugin.",
-          "",         "",         static_cast<std::uint32_t>(kind),
-          dimensions, precisions, 0,
-          parameters, count,      count * 8,
-          nullptr,    0,          0,
-          nullptr,    "Functor",  "// what backend cuda would compile",
-          nullptr};
+  mpm_descriptor made{id,         "1.0.0",    "A test plugin.",
+                      "",         "",         static_cast<std::uint32_t>(kind),
+                      dimensions, precisions, 0,
+                      parameters, count,      count * 8,
+                      nullptr,    0,          0,
+                      nullptr,    "Functor",  "// what backend cuda would compile",
+                      nullptr};
+  if (kind == MPM_CONTACT) made.kind_table = &plain_law;
+  return made;
 }
 
 inline const mpm_descriptor descriptors[] = {

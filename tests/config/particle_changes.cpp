@@ -138,6 +138,8 @@ TEST_CASE("what counts on particles that stay is refused beside those that do no
   check_refused({emits, "/bodies/0/initial_displacement=[\"0.01*X\", 0]"}, why + "what is emitted begins undeformed");
   const std::string law = R"(/contact={"type": "coulomb", "friction": 0.2})";
   check_refused({emits, law, "/output/contact_nodes=true"}, "the nodes of contact are those of a step");
+  check_refused({emits, law, "/output/contact_pairs=true", "/output/normal_error=true"},
+                "the normals of contact are those of a step");
   check_refused({emits, law, R"(/output/particles={"count": 2, "fields": ["contact_traction"]})"},
                 "tractions of contact are those of a step");
   CHECK(refused({emits, law, R"(/output/particles={"count": 2, "fields": ["velocity"]})"}) == "accepted");

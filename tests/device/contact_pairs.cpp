@@ -83,6 +83,27 @@ TEST_CASE("the nodes where bodies meet are those of the reference backend, in ev
   }
 }
 
+TEST_CASE("the error of a pair's normals is that of the reference backend", "[device]") {
+  Mix mix;
+  mix.contact = R"({"type": "coulomb", "friction": 0.2, "normal": "mass_gradient"})", mix.close = true;
+  mix.more = R"(, "output": {"contact_pairs": true, "normal_error": true})";
+  const auto errors = [](auto&& scene) {
+    while (!scene.simulation.finished()) scene.simulation.step();
+    std::map<std::string, double> found;
+    for (const auto& [name, value] : chosen(scene.metrics))
+      if (name.ends_with("normal error") || name.ends_with("misfit")) found[name] = value;
+    return found;
+  };
+  const auto expected = errors(Scene(mix.text(), {"/backend=reference", "/precision=double"}));
+  CHECK(expected.size() == 3);
+  for (const std::string precision : {"double", "float"})
+    for (const auto& [name, value] : errors(DeviceScene(mix.text(), precision))) {
+      INFO(name << ", " << precision);
+      CHECK(value > 0);
+      CHECK(value == Approx(expected.at(name)).epsilon(precision == "double" ? 1e-6 : 0.01));
+    }
+}
+
 TEST_CASE("adhesion that holds and gives way on the host-run device", "[device]") {
   const std::string weak = R"({"type": "adhesion", "normal_strength": 300, "shear_strength": 200, "friction": 0.2})";
   for (const int dimension : {2, 3}) {

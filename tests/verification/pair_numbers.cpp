@@ -62,6 +62,33 @@ std::string leaning_block(double angle, double friction) {
          R"(}], "solver": {"end_time": 0.4}, "output": {"ledger": false, "bodies": true, "contact_pairs": true}})";
 }
 
+/// Two soft blocks in free space that meet along y = 0 and begin to move by `velocity`, the upper one a little towards the
+/// other, with a contact normal that is given as (sin turn, cos turn).
+std::string given_normals(double turn, const std::vector<std::string>& velocity) {
+  const int dimension = static_cast<int>(velocity.size());
+  const bool flat = dimension == 2;
+  const auto block = [&](const std::string& name, double from, double to, double approach) {
+    std::string speeds;
+    for (int c = 0; c < dimension; ++c)
+      speeds += (c > 0 ? ", \"" : "\"") + velocity[static_cast<std::size_t>(c)] +
+                (c == 1 ? "-" + digits(approach) : std::string()) + "\"";
+    return R"({"name": ")" + name + R"(", "material": "m", "geometry": {"type": "box", "lower": [-0.25, )" +
+           digits(from) + (flat ? "" : ", -0.25") + "], \"upper\": [0.25, " + digits(to) + (flat ? "" : ", 0.25") +
+           "]}, \"velocity\": [" + speeds + "]}";
+  };
+  const std::string lower = flat ? "[-1, -1]" : "[-0.6, -0.6, -0.6]", upper = flat ? "[1, 1]" : "[0.6, 0.6, 0.6]";
+  return R"({"dimension": )" + std::to_string(dimension) + R"(, "grid": {"cell_size": )" + (flat ? "0.05" : "0.1") +
+         R"(, "domain": [)" + lower + ", " + upper + R"(], "boundaries": {"all": "free"}},
+      "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+      "contact": {"type": "frictionless", "normal": {"type": "given", "x": )" +
+         digits(std::sin(turn)) + ", \"y\": " + digits(std::cos(turn)) + R"(}, "detection": "approach"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e-3, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [)" +
+         block("low", -0.3, 0, 0) + ", " + block("high", 0, 0.3, 0.05) +
+         R"(], "solver": {"time_step": 0.001, "end_time": 0.1},
+      "output": {"ledger": false, "bodies": true, "contact_pairs": true, "normal_error": true}})";
+}
+
 }  // namespace
 
 TEST_CASE("the area of contact is that of the face, for every shape and wherever it lies in the cell",
@@ -119,6 +146,69 @@ TEST_CASE("the parts of a pair's force are the weight that presses and friction"
     const auto [held_normal, held_along, unused] = means(0.6);
     CHECK(held_normal == Approx(pressing).epsilon(0.01));
     CHECK(held_along == Approx(weight / 2).epsilon(0.02));
+  }
+}
+
+TEST_CASE("the error of a pair's normals is the angle by which given ones lean against the faces, however these move",
+          "[pairs][normals]") {
+  const double degree = std::numbers::pi / 180;
+  const double turn = 10 * degree;
+  struct Motion {
+    const char* name;
+    std::vector<std::string> velocity;
+    double angle;  ///< degrees between the given normal and the face's after 40 steps
+  };
+  // A rotation by 40 steps of the tangent of 2 dt; shear along y by g = 0.2, which leans the normal to (-g, 1); shear along x,
+  // which does not; and stretching, which does not either.
+  for (const Motion& motion :
+       {Motion{"none", {"0", "0"}, 10}, Motion{"rotation", {"-2*y", "2*x"}, 10 + 40 * std::atan(0.002) / degree},
+        Motion{"shear along y", {"0", "5*x"}, 10 + std::atan(0.2) / degree}, Motion{"shear along x", {"5*y", "0"}, 10},
+        Motion{"stretch", {"4*x", "-3*y"}, 10}, Motion{"in 3-D", {"0", "5*x", "0"}, 10 + std::atan(0.2) / degree}})
+    for (const char* backend : {"reference", "cpu"}) {
+      INFO(motion.name << ", " << backend);
+      Scene scene(given_normals(turn, motion.velocity), {set("/backend", backend)});
+      CHECK(std::isnan(chosen(scene.metrics).at("pair low high normal error")));  // before any step
+      const Numbers now = after(scene, 40);
+      CHECK(now.at("pair low high normal error") == Approx(motion.angle).margin(0.1));
+      CHECK(now.at("pair low high largest normal error") == Approx(motion.angle).margin(0.1));
+      CHECK(now.at("pair low high surface misfit") < 0.05 * 0.05);
+    }
+}
+
+TEST_CASE("the nearer of both surfaces is the one that a normal is compared with, and a curved one is followed",
+          "[pairs][normals]") {
+  // A disc that is pressed on a block: where they touch both surfaces have the given normal, and beside it the block's has.
+  const std::string text = R"({"dimension": 2, "grid": {"cell_size": 0.05, "domain": [[-1, -1], [1, 1]],
+      "boundaries": {"all": "free"}}, "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+      "contact": {"type": "frictionless", "normal": {"type": "given", "x": 0, "y": 1}, "detection": "approach"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e-3, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [
+        {"name": "block", "material": "m", "geometry": {"type": "box", "lower": [-0.5, -0.3], "upper": [0.5, 0]}},
+        {"name": "disc", "material": "m", "geometry": {"type": "ball", "centre": [0, 0.3], "radius": 0.3},
+         "velocity": [0, -0.1]}],
+      "solver": {"time_step": 0.001, "end_time": 0.1},
+      "output": {"ledger": false, "bodies": true, "contact_pairs": true, "normal_error": true}})";
+  Scene scene(text);
+  const Numbers now = after(scene, 5);
+  CHECK(now.at("pair block disc nodes") > 2);
+  CHECK(now.at("pair block disc largest normal error") < 1e-3);
+  // A normal that leans by 10 degrees is nearer to that of the disc on one side of the point of contact.
+  Scene leaning(text, {set("/contact/normal/x", digits(std::sin(10 * std::numbers::pi / 180))),
+                       set("/contact/normal/y", digits(std::cos(10 * std::numbers::pi / 180)))});
+  const Numbers leans = after(leaning, 5);
+  CHECK(leans.at("pair block disc largest normal error") == Approx(10).margin(1e-3));
+  CHECK(leans.at("pair block disc normal error") < 9.5);
+}
+
+TEST_CASE("the normals of the widest gap under a block on a turned bed are half a degree off at most",
+          "[pairs][normals]") {
+  for (const double angle : {0.0, 17.0, 30.0}) {
+    INFO(angle << " degrees");
+    Scene scene(leaning_block(angle, 0.3), {"/output/normal_error=true"});
+    while (scene.simulation.time() < 0.3) scene.simulation.step();
+    const Numbers now = chosen(scene.metrics);
+    CHECK(now.at("pair bed block normal error") < 0.5);
+    CHECK(now.at("pair bed block largest normal error") < 3);
   }
 }
 
