@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "metrics/contact_traction.hpp"
+#include "metrics/normal_error.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 #include "support/stacked_blocks.hpp"
@@ -198,6 +199,32 @@ TEST_CASE("the nearer of both surfaces is the one that a normal is compared with
   const Numbers leans = after(leaning, 5);
   CHECK(leans.at("pair block disc largest normal error") == Approx(10).margin(1e-3));
   CHECK(leans.at("pair block disc normal error") < 9.5);
+}
+
+TEST_CASE(
+    "the mean error of normals is by the forces of the nodes, and the largest without those of a hundredth of them",
+    "[pairs][normals]") {
+  const Scene scene(given_normals(0, {"0", "0"}));
+  const double degree = std::numbers::pi / 180;
+  std::vector<ContactNode> nodes;
+  for (const auto& [angle, force] : {std::pair{10.0, 3.0}, {30.0, 1.0}, {50.0, 0.02}, {70.0, 0.0}}) {
+    ContactNode& node = nodes.emplace_back();
+    node.node = {20 + static_cast<int>(nodes.size()), 20, 0}, node.b = 1;  // at y = 0, right of the middle
+    node.normal = {std::sin(angle * degree), std::cos(angle * degree), 0};
+    node.force = {0, -force, 0};
+  }
+  Views views(scene.simulation);
+  const std::vector<NormalError> errors = normal_errors(views, nodes);
+  REQUIRE(errors.size() == 1);
+  CHECK(errors[0].mean == Approx((3 * 10 + 1 * 30 + 0.02 * 50) / 4.02));
+  CHECK(errors[0].largest == Approx(30));
+  nodes.resize(3);
+  nodes[2].force = {0, -0.04, 0};
+  CHECK(normal_errors(views, nodes)[0].largest == Approx(50));
+  nodes.clear();
+  CHECK(std::isnan(normal_errors(views, nodes)[0].mean));
+  CHECK(std::isnan(normal_errors(views, nodes)[0].largest));
+  CHECK(normal_errors(views, nodes)[0].misfit == Approx(0).margin(1e-12));
 }
 
 TEST_CASE("the normals of the widest gap under a block on a turned bed are half a degree off at most",
