@@ -5,6 +5,7 @@
 #include "device/device_support.hpp"
 
 using namespace mpm;
+using namespace std::string_literals;
 using namespace mpm::test;
 
 namespace {
@@ -186,6 +187,25 @@ TEST_CASE("a step of another length, and one with a filter, run beside graphs", 
   check_same(plain, found);
   CHECK(found.graph_launches > 0);
   CHECK(found.graph_launches < found.steps - 3);
+}
+
+TEST_CASE("a filter's loop runs by graphs, but with a tolerance, where the host waits for the norm of each pass",
+          "[device][graphs]") {
+  for (const std::string order : {"last", "modified_last"})
+    for (const std::string& filter : {R"({"type": "fmpm", "order": 4)"s, R"({"type": "xpic", "order": 3)"s,
+                                      R"({"type": "fmpm", "order": 2, "constraints": "at_end")"s}) {
+      INFO(filter << ", " << order);
+      Mix mix = touching();
+      mix.filter = filter + "}", mix.stress_update = order;
+      const Run plain = run(mix.text(), false), found = run(mix.text(), true);
+      check_same(plain, found);
+      for (const Run* any : {&plain, &found}) CHECK(any->synchronisations == any->steps);
+      CHECK(found.graph_launches >= found.steps - 3);
+      mix.filter = filter + R"(, "tolerance": 1e-9})";
+      const Run waits = run(mix.text(), true);
+      CHECK(waits.synchronisations >= 2 * waits.steps);
+      CHECK(waits.graph_launches == 0);
+    }
 }
 
 TEST_CASE("while a graph is made the host driver refuses what no graph can hold", "[device][graphs]") {

@@ -240,7 +240,9 @@ class DeviceBackend final : public Backend, public OffersTotals {
   void record_force(const StepInfo& step);
 
   // ---- filter.cpp
-  double increment_norm();
+  /// Takes the mass norm of the increment, kg^1/2 m/s, to `use`: with a tolerance at once, as it decides whether another pass
+  /// follows, else when the host looks.
+  void measure_increment(const std::function<void(double)>& use);
   void keep_unfiltered();
   void begin_filter(const Pass& pass);
   /// The first increment is a velocity, which a moving wall mirrors about its own; later ones are differences.
@@ -347,6 +349,7 @@ class DeviceBackend final : public Backend, public OffersTotals {
   RigidNodes<T> rigid_;
   bool notes_reactions_ = false;  ///< the pass under way notes what supports give
   FilterRecord filter_;
+  int filter_pass_ = 0;    ///< how many passes of the filter's loop are launched in the step
   bool prepared_ = false;  ///< stress, volume ratio and block of each particle are those of its place and state
   bool uses_graphs_;
   long steps_to_forget_;

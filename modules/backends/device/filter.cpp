@@ -8,10 +8,10 @@
 namespace mpm::device {
 
 template <class T>
-double DeviceBackend<T>::increment_norm() {
+void DeviceBackend<T>::measure_increment(const std::function<void(double)>& use) {
   const Tally<1> square = sum_over_nodes("increment_norm");
-  look();  // the norm decides whether another pass follows
-  return std::sqrt((*square)[0]);
+  later([square, use] { use(std::sqrt((*square)[0])); });
+  if (experiment_.filter_schedule.tolerance > 0) look();
 }
 
 template <class T>
@@ -25,8 +25,8 @@ template <class T>
 void DeviceBackend<T>::begin_filter(const Pass& pass) {
   for_each_field("begin_filter", vectors());
   if (pass.has(Act::keep_velocity)) keep_unfiltered();
-  filter_.iterations = 0;
-  filter_.first_norm = filter_.last_norm = increment_norm();
+  filter_pass_ = 0;
+  measure_increment([this](double norm) { filter_.iterations = 0, filter_.first_norm = filter_.last_norm = norm; });
   begin_stage(accounted_ && pass.stage == Stage::after_forces);
 }
 
@@ -39,19 +39,21 @@ void DeviceBackend<T>::project(const Pass& pass, const StepInfo& step) {
     later([this] { reactions_.begin_projection(); });
     note_beyond(beyond_increment, GivenBySupport::projection);
   }
-  fold_projection(filter_.iterations > 0);
+  fold_projection(filter_pass_ > 0);
 }
 
 template <class T>
 void DeviceBackend<T>::update_filter(const Pass& pass, const StepInfo& step) {
   for_each_field("update_filter", nodes());
-  if (notes_reactions_)
-    later([this, pass = static_cast<int>(filter_.iterations + 1)] { reactions_.take_projection(pass); });
+  if (notes_reactions_) later([this, pass = filter_pass_ + 1] { reactions_.take_projection(pass); });
   if (experiment_.filter_schedule.constrain_always) {
     constrain_velocity(pass, step);
     for_each_field("correct_increment", vectors());
   }
-  filter_.take_norm(increment_norm(), 4500.0 * static_cast<double>(std::numeric_limits<T>::epsilon()));
+  ++filter_pass_;
+  measure_increment([this](double norm) {
+    filter_.take_norm(norm, 4500.0 * static_cast<double>(std::numeric_limits<T>::epsilon()));
+  });
   for_each_axis("fill_increments", filled_axes());
 }
 

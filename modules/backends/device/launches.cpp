@@ -11,7 +11,7 @@ template <class T>
 Arguments<T> DeviceBackend<T>::arguments_of(const VelocityField<T>& field, const Manner& manner) const {
   Arguments<T> a = scene_;
   point_to(a, field);
-  a.iteration = static_cast<int>(filter_.iterations + 1);
+  a.iteration = filter_pass_ + 1;
   a.remap = manner.remap, a.after_forces = manner.after_forces, a.walls_at_rest = manner.walls_at_rest;
   return a;
 }

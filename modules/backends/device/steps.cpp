@@ -5,12 +5,13 @@
 namespace mpm::device {
 
 /// Passes wait for the end of their step, by which it is known whether a graph does all of them at once. What the host
-/// decides by, the estimate of the step and the norms of a filter's loop, does not wait.
+/// decides by, the estimate of the step and the norms of a filter's loop with a tolerance, does not wait.
 template <class T>
 void DeviceBackend<T>::execute(const Pass& pass, const StepInfo& step) {
   time_ = step.time, end_ = step.time + step.dt;
   formulas_.take(time_, end_);  // before the launches of the step, and outside of its graph
-  const bool decides = pass.has(Act::estimate_time_step) || step.filtered;
+  const bool by_norm = step.filtered && experiment_.filter_schedule.tolerance > 0;
+  const bool decides = pass.has(Act::estimate_time_step) || by_norm;
   if (uses_graphs_ && !decides && !device_->measures()) {
     waiting_.push_back({&pass, step});
   } else {
