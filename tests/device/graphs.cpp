@@ -100,6 +100,8 @@ TEST_CASE("formulas of loads and of grips are evaluated without the host, in gra
   for (const std::string& setting :
        {set("/body_force", R"(["x", 0])"), set("/body_force", R"J(["0.1*t", "X+sin(9*t*y)"])J"),
         std::string(R"(/loads=[{"type": "body_force", "body": "b", "acceleration": ["0.1*t-X", 0]}])"),
+        std::string(R"J(/loads=[{"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0],
+            "normal": [1, 0]}, "stiffness": [2e3, 1e3]}])J"),
         std::string(R"(/loads=[{"type": "force", "body": "a", "at": [0.31, 0.43], "force": ["5*t", 2]}])"),
         std::string(R"J(/loads=[{"type": "spring", "body": "b", "where": {"type": "half_space", "point": [0.52, 0],
             "normal": [1, 0]}, "stiffness": [2e3, 1e3], "damping": [50, 100]}, {"type": "pressure", "body": "a",

@@ -138,6 +138,7 @@ ParticleFormulas::ParticleFormulas(const Experiment& experiment) : dimension_(ex
   if (experiment.body_force) accelerations_.push_back({add(*experiment.body_force, false), all_bodies});
   for (std::size_t k = 0; k < experiment.loads.size(); ++k) {
     const Load& load = experiment.loads[k];
+    loads_at_points_ = loads_at_points_ || load.at_points();
     if (load.type == LoadType::spring)
       use_initial_position_ = use_initial_position_ || load.gives(ExternalForce::spring);
     else if (load.at_points())
@@ -181,7 +182,7 @@ std::string ParticleFormulas::call_text(std::size_t call) const {
 }
 
 std::string ParticleFormulas::text() const {
-  if (!any()) return "";
+  if (!any() && !loads_at_points_) return "";
   const std::string vector = "Vec<" + std::to_string(dimension_) + ", Scalar>", place = vector + "& ";
   const std::string parameters = "[[maybe_unused]] const " + place + "x, [[maybe_unused]] const " + place +
                                  "X,\n      [[maybe_unused]] const Scalar* numbers) ";

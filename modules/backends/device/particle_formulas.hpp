@@ -21,7 +21,7 @@ class ParticleFormulas {
   bool use_initial_position() const { return use_initial_position_; }
   bool use_time() const { return use_time_; }
   /// Static functions of the scene: acceleration(body, x, X, numbers), velocity_of_grip(grip, x, X, numbers) and
-  /// load_value(load, x, X, numbers) of a load at points; empty where there are no formulas.
+  /// load_value(load, x, X, numbers) of a load at points; empty where there are neither formulas nor loads at points.
   std::string text() const;
   /// How many numbers the functions take.
   std::size_t count() const;
@@ -53,7 +53,7 @@ class ParticleFormulas {
   std::string call_text(std::size_t call) const;
 
   int dimension_;
-  bool use_initial_position_ = false, use_time_ = false;
+  bool use_initial_position_ = false, use_time_ = false, loads_at_points_ = false;
   std::map<std::string, int> known_;    ///< number of a function by its text
   std::vector<std::string> functions_;  ///< their texts from the parameters on
   std::vector<Call> calls_;
