@@ -169,8 +169,10 @@ void ExperimentReader::read_becoming(const Fields& fields, BodySpecification& bo
   becoming.every_steps = static_cast<long>(becomes.number("every_steps"));
   if (when.given("above")) becoming.above = when.number("above");
   if (when.given("below")) becoming.below = when.number("below");
-  if (const Node* condition = becomes.node("when");
-      condition && condition->type == Node::Type::object && !becoming.above && !becoming.below)
+  const Node* const condition = becomes.node("when");
+  if (condition && condition->type != Node::Type::object)
+    problem(*condition, "expected an object such as {\"quantity\": \"speed\", \"above\": 1}");
+  else if (condition && !becoming.above && !becoming.below)
     problem(*condition, "the condition has no bound: give \"above\" or \"below\"");
   if (becoming.above && becoming.below && *becoming.below > *becoming.above)
     problem(*becomes.node("when"), "every value is above " + number_text(*becoming.above) + " or below " +

@@ -198,6 +198,9 @@ void ExperimentReader::read_normal_error(const Fields& fields) {
     refuse("there are no such normals without \"contact\"; those of rigid bodies are exact");
   else if (experiment_.contact->plugin && (experiment_.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION))
     refuse("the contact law \"" + std::string(experiment_.contact->plugin->id()) + "\" has no normals");
+  for (const BodySpecification& body : experiment_.bodies)
+    if (body.seeding.kind == SeedingKind::points)
+      refuse("body " + in_quotes(body.name) + " has particles out of a file, and nobody knows where its boundary is");
   for (int axis = 0; axis < context_.dimension; ++axis)
     if (experiment_.faces[axis][0].type == ConditionType::periodic)
       refuse("bodies are followed as wholes, and a periodic axis may take one apart: remove one of them");

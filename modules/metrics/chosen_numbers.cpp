@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "metrics/normal_error.hpp"
+#include "metrics/pair_normal_error.hpp"
 #include "metrics/probes.hpp"
 #include "metrics/rigid_gap.hpp"
 #include "simulation/contact_impulse.hpp"
@@ -171,8 +171,9 @@ void ChosenNumbers::add_pairs(Views& views, std::vector<ChosenRow>& rows) const 
   const RecordedUnits units = units_of(experiment);
   const int first = recorded_axes(experiment).linear;
   const bool with_normals = experiment.output.normal_error;
-  const std::vector<NormalError> normals =
-      with_normals ? normal_errors(views, simulation_.backend().contact_nodes()) : std::vector<NormalError>();
+  const std::vector<PairNormalError> normals =
+      with_normals ? pair_normal_errors(views, simulation_.backend().contact_nodes(), simulation_.last_time_step())
+                   : std::vector<PairNormalError>();
   for (int a = 0; a < experiment.field_count; ++a)
     for (int b = a + 1; b < experiment.field_count; ++b) {
       const PairRecord& pair = simulation_.backend().contact_pairs()[pair_index(a, b, experiment.field_count)];
@@ -187,7 +188,7 @@ void ChosenNumbers::add_pairs(Views& views, std::vector<ChosenRow>& rows) const 
       add("slipping nodes", "", static_cast<double>(pair.slipping));
       add("largest penetration", "m", pair.largest_penetration);
       if (!with_normals) continue;
-      const NormalError& error = normals[pair_index(a, b, experiment.field_count)];
+      const PairNormalError& error = normals[pair_index(a, b, experiment.field_count)];
       add("normal error", "deg", error.mean);
       add("largest normal error", "deg", error.largest);
       add("surface misfit", "m", error.misfit);

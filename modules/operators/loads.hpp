@@ -31,6 +31,24 @@ struct SharePlace {
   }
 };
 
+/// The force of springs to the ground on the middle of a share, for each of its measure: as far as it has moved, which is
+/// found from differences, so that little is lost far from the origin.
+template <int D, class T>
+MPM_HD Vec<D, T> spring_force(const T* stiffness, const LoadShare<T>& share, const SharePlace<D, T>& place,
+                              const Vec<D, T>& particle, const Vec<D, T>& start) {
+  Vec<D, T> force;
+  for (int c = 0; c < D; ++c)
+    force[c] = -stiffness[c] * ((particle[c] - start[c]) + (place.way[c] - share.first[c]) / share.measure);
+  return force;
+}
+/// The same of dashpots on a particle that moves.
+template <int D, class T>
+MPM_HD Vec<D, T> dashpot_force(const T* damping, const Vec<D, T>& velocity) {
+  Vec<D, T> force;
+  for (int c = 0; c < D; ++c) force[c] = -damping[c] * velocity[c];
+  return force;
+}
+
 /// What a particle gives a node: w b + S grad w.
 template <int D, class T>
 struct GivenByLoads {

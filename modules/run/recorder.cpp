@@ -209,7 +209,7 @@ void Recorder::record_frame() {
       for (const std::size_t component : {0, 2, 1, 3})  // columns of the matrix are the semi-sides
         snapshot.domain_axes.push_back(static_cast<float>(state.domain[k + component]));
   }
-  snapshot.contact_nodes = simulation_.backend().contact_nodes();
+  if (experiment.output.contact_nodes) snapshot.contact_nodes = simulation_.backend().contact_nodes();
   if (simulation_.particle_changes()) snapshot.half_sizes = half_sizes_of(simulation_);
   if (experiment.output.vtk) write_vtk(frames_taken_);
   const std::size_t bytes =

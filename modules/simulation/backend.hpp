@@ -398,7 +398,7 @@ class Backend {
   virtual const ContactRecord& contact_record() const = 0;
   /// The record of each pair of fields, in the order of pair_index, where /output/contact_pairs asks; else empty.
   virtual const std::vector<PairRecord>& contact_pairs() const = 0;
-  /// The nodes where fields met in the last step, where /output/contact_nodes or contact_traction asks and the step was to be
+  /// The nodes where fields met in the last step, where /output/contact_nodes, normal_error or contact_traction asks and the step was to be
   /// observed when it began (Simulation::observe_when); else empty.
   virtual const std::vector<ContactNode>& contact_nodes() const = 0;
   virtual const FilterRecord& filter_record() const = 0;

@@ -102,6 +102,21 @@ bool holds(Precision precision, double value) {
   return std::abs(value) <= most;
 }
 
+bool gives_numbers(const Experiment& experiment, const VectorExpression& formula, const Vector3& x, const Vector3& X,
+                   double time) {
+  const Vector3 given = formula(x, X, time);
+  for (int c = 0; c < experiment.dimension; ++c)
+    if (!holds(experiment.precision, given[c])) return false;
+  if (experiment.precision != Precision::single) return true;
+  float at[6], values[3];
+  PointArrays<float> point;
+  for (int c = 0; c < 3; ++c) {
+    at[c] = static_cast<float>(x[c]), at[3 + c] = static_cast<float>(X[c]);
+    point.x[c] = at + c, point.X[c] = at + 3 + c;
+  }
+  return formula.evaluate(1, point, time, {values, values + 1, values + 2}) == 1;
+}
+
 Failure force_failure(const Experiment& experiment, const Load* load, int body, std::size_t particle, const Vector3& x,
                       const Vector3& X, double time) {
   const LoadValue value = value_of(load ? load->type : LoadType::body_force);

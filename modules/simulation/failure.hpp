@@ -57,6 +57,10 @@ struct Failure {
 
 /// Whether a value is a number within the range of a precision.
 bool holds(Precision precision, double value);
+/// Whether a formula gives such numbers at a place x that began at X (m), also with its operations done in the scene's
+/// precision.
+bool gives_numbers(const Experiment& experiment, const VectorExpression& formula, const Vector3& x, const Vector3& X,
+                   double time);
 
 /// The failure of a particle where a load, or without one /body_force, has no finite value at the place x that it acts on,
 /// which began at X (m), or none that the scene's precision holds: whose operations a backend may have done in it, so that

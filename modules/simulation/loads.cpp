@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <type_traits>
 
 #include "simulation/point_bins.hpp"
 
@@ -82,7 +84,7 @@ BodyLoads::BodyLoads(const Experiment& experiment, int body, const SeededBody& s
   if (!experiment.loaded_at_points(body).empty()) take_shares(seeds);
 }
 
-bool BodyLoads::holds(const Vector3& values) const {
+bool BodyLoads::all_held(const Vector3& values) const {
   return std::all_of(values.begin(), values.end(),
                      [&](double value) { return mpm::holds(experiment_.precision, value); });
 }
@@ -155,7 +157,7 @@ Vector3 BodyLoads::acceleration(std::size_t id, const Vector3& x, const Vector3&
   Vector3 sum{};
   for (const PerMass& force : accelerations_) {
     const Vector3 value = (*force.expression)(x, X, time);
-    if (!holds(value)) failures.note(force_failure(experiment_, force.load, body_, id, x, X, time));
+    if (!all_held(value)) failures.note(force_failure(experiment_, force.load, body_, id, x, X, time));
     for (int c = 0; c < dimension_; ++c) sum[c] += value[c];
   }
   return sum;
@@ -185,7 +187,7 @@ void BodyLoads::accelerations(std::size_t count, const std::int32_t* ids, const 
       if (at.x[c]) x[c] = at.x[c][p];
       if (at.X[c]) X[c] = at.X[c][p];
     }
-    if (!holds(sum)) note_acceleration(static_cast<std::size_t>(ids[p]), x, X, time, failures);
+    if (!all_held(sum)) note_acceleration(static_cast<std::size_t>(ids[p]), x, X, time, failures);
   }
 }
 
@@ -198,11 +200,11 @@ void BodyLoads::note_acceleration(std::size_t id, const Vector3& x, const Vector
                                   FirstFailure& failures) const {
   bool noted = false;
   for (const PerMass& force : accelerations_) {
-    if (!force.expression->not_finite(x, X, time)) continue;
+    if (gives_numbers(experiment_, *force.expression, x, X, time)) continue;
     failures.note(force_failure(experiment_, force.load, body_, id, x, X, time));
     noted = true;
   }
-  // A number at the very end of the range may be finite alone and not in a batch.
+  // The sum alone may be beyond the range.
   if (!noted) failures.note(force_failure(experiment_, accelerations_.front().load, body_, id, x, X, time));
 }
 
@@ -236,13 +238,11 @@ LoadCoefficients BodyLoads::coefficients(ExternalForce force, std::size_t id, co
       std::copy_n(place.x.v, D, here.begin());
       std::copy_n(place.X.v, D, start.begin());
       const Vector3 given = load.value(here, start, time);
-      if (!holds(given)) failures.note(force_failure(experiment_, &load, body_, id, here, start, time));
+      if (!all_held(given)) failures.note(force_failure(experiment_, &load, body_, id, here, start, time));
       value = vector(given);
     }
-    for (int c = 0; c < D; ++c) {
-      if (force == ExternalForce::spring) value[c] = -load.stiffness[c] * (place.x[c] - place.X[c]);
-      if (force == ExternalForce::dashpot) value[c] = -load.damping[c] * v[c];
-    }
+    if (force == ExternalForce::spring) value = spring_force(load.stiffness.data(), share, place, x, X);
+    if (force == ExternalForce::dashpot) value = dashpot_force(load.damping.data(), v);
     if (load.type == LoadType::pressure)
       add_pressure(share, place, x, F, value[0], load.follower, load.follower && experiment_.axisymmetric(), sum);
     else
@@ -252,6 +252,31 @@ LoadCoefficients BodyLoads::coefficients(ExternalForce force, std::size_t id, co
   std::copy_n(sum.b.v, D, coefficients.b.begin());
   std::copy_n(sum.S.m, D * D, coefficients.S.begin());
   return coefficients;
+}
+
+Failure BodyLoads::failed_formula(std::size_t id, const LoadedParticle& particle, double time) const {
+  const auto middle = [&]<int D>(std::integral_constant<int, D>, const Share& share) {
+    Vec<D, double> x, X;
+    Mat<D, double> F;
+    std::copy_n(particle.x.begin(), D, x.v), std::copy_n(particle.X.begin(), D, X.v);
+    std::copy_n(particle.F.begin(), D * D, F.m);
+    const SharePlace<D, double> place(share, x, X, F);
+    std::pair<Vector3, Vector3> found{particle.x, particle.X};
+    std::copy_n(place.x.v, D, found.first.begin()), std::copy_n(place.X.v, D, found.second.begin());
+    return found;
+  };
+  std::optional<Failure> first;
+  for (std::uint32_t k = first_[id]; k < first_[id + 1]; ++k) {
+    const Load& load = experiment_.loads[shares_[k].load];
+    if (load.type == LoadType::spring) continue;
+    const auto [x, X] = dimension_ == 2 ? middle(std::integral_constant<int, 2>(), shares_[k])
+                                        : middle(std::integral_constant<int, 3>(), shares_[k]);
+    const bool good = gives_numbers(experiment_, load.value, x, X, time);
+    if (good && first) continue;
+    first = force_failure(experiment_, &load, body_, id, x, X, time);
+    if (!good) break;
+  }
+  return first.value();
 }
 
 template LoadCoefficients BodyLoads::coefficients<2>(ExternalForce, std::size_t, const LoadedParticle&, double,

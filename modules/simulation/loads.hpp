@@ -63,6 +63,10 @@ class BodyLoads {
   const std::vector<LoadShare<double>>& shares() const { return shares_; }
   const std::vector<std::uint32_t>& first_shares() const { return first_; }
 
+  /// The failure of the first load at points that a particle carries whose formula gives no number, as a backend has found
+  /// of one of them; of the first one with a formula where none shows it here. Throws std::bad_optional_access without any.
+  Failure failed_formula(std::size_t id, const LoadedParticle& particle, double time) const;
+
   /// Evaluates a kind of force that acts at points, at the time of a step's begin: calls give(p, coefficients) for those
   /// of `count` particles that carry some, after read(p, particle) has filled the particle, and notes those whose load is
   /// not finite. ids[p] is the index of seeding, or p itself where ids is null. Returns whether any carries some.
@@ -90,7 +94,7 @@ class BodyLoads {
     const Load* load;
   };
   /// Whether all values are numbers that the scene's precision holds.
-  bool holds(const Vector3& values) const;
+  bool all_held(const Vector3& values) const;
   bool carries(ExternalForce force, std::size_t id) const;
   template <int D>
   LoadCoefficients coefficients(ExternalForce force, std::size_t id, const LoadedParticle& particle, double time,

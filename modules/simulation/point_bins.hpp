@@ -24,6 +24,8 @@ class PointBins {
   void add_where_open(const Vector3& x, const T& thing) {
     if (const auto found = bins_.find(bin_of(x)); found != bins_.end()) found->second.push_back(thing);
   }
+  /// Whether it would be added at x.
+  bool is_open(const Vector3& x) const { return bins_.contains(bin_of(x)); }
   void open_around(const Vector3& x) {
     for_each_bin_around(x, [&](const Bin& bin) { bins_.try_emplace(bin); });
   }

@@ -192,6 +192,12 @@ TEST_CASE("names that no record has are mistakes of the file, with place and nea
             "/output/normal_error: bodies are followed as wholes, and a periodic axis may take one apart"));
   scene.erase("contact");
   CHECK(has(refusal(scene), "/output/normal_error: there are no such normals without \"contact\""));
+  const Folder folder;
+  spill(folder / "points.csv", "x,y\n0.3,0.3\n0.31,0.3\n");
+  scene = asking();
+  scene["bodies"][0].erase("geometry");
+  scene["bodies"][0]["seeding"] = {{"type", "points"}, {"file", (folder / "points.csv").string()}};
+  CHECK(has(refusal(scene), "/output/normal_error: body \"ball\" has particles out of a file"));
   scene = two_balls();
   scene["output"]["ledger"] = false;
   scene["figures"] = {{{"type", "columns"}, {"name", "energy"}, {"columns", {"total energy"}}}, "ledger"};
@@ -233,6 +239,17 @@ TEST_CASE("the nodes where bodies meet stand in a table beside each frame, and a
 }
 
 // A run asks for the names of its records of a few particles alone, and had counted those of the whole body there.
+TEST_CASE("what the error of normals asks of the nodes where bodies meet is not drawn") {
+  Json scene = asking();
+  scene["output"]["frames"] = 2, scene["solver"]["end_time"] = 0.2;
+  const Folder with, without;
+  REQUIRE(run_scene(with, scene).code == 0);
+  scene["output"]["normal_error"] = false;
+  REQUIRE(run_scene(without, scene).code == 0);
+  for (const char* frame : {"frame_0000.svg", "frame_0001.svg"})
+    CHECK(slurp(with / "run/frames" / frame) == slurp(without / "run/frames" / frame));
+}
+
 TEST_CASE("a body of any number of particles has its numbers") {
   const Folder folder;
   Json scene = asking();

@@ -145,6 +145,8 @@ TEST_CASE("what counts on particles that stay is refused beside those that do no
   CHECK(refused({emits, law, R"(/output/particles={"count": 2, "fields": ["velocity"]})"}) == "accepted");
   check_refused({R"(/bodies/0/becomes={"body": "right", "when": {"quantity": "speed", "above": 1, "below": 2}})"},
                 "every value is above 1 or below 2");
+  check_refused({R"(/bodies/0/becomes={"body": "nobody", "when": "t > 1"})"},
+                "/bodies/0/becomes/when: expected an object such as {\"quantity\": \"speed\", \"above\": 1}");
   check_refused({R"(/bodies/0/becomes={"body": "right", "when": {"quantity": "speed", "above": "60 kPa"}})"}, "above");
   CHECK(
       errors(two_discs, {emits}).find("exact solutions follow each particle from the start, and /emitters/0 changes") !=

@@ -222,7 +222,8 @@ TEST_CASE("every backend in float names the load that is more than its range hol
         std::pair(R"("type": "body_force", "acceleration": [1, )" + large + "]", "acceleration/1"s)}) {
     INFO(load);
     Mix mix;
-    mix.more = R"(, "loads": [{"body": "a", )" + load + "}]";
+    // A force on everything comes first, and is good.
+    mix.more = R"(, "body_force": ["x", "y"], "loads": [{"body": "a", )" + load + "}]";
     DeviceScene device(mix.text(), "float");
     Scene cpu(mix.text(), {"/backend=cpu", "/precision=float"});
     const std::optional<Stop> found = stop_of(device), other = stop_of(cpu);
@@ -246,12 +247,15 @@ TEST_CASE("a device names the load that is no number in float alone, and the par
     "point": [0.31, 0], "normal": [1, 0]}, "pressure": "sqrt((y+1e4)-1e4-y+1e-6)"}])J";
   Mix mix;
   mix.more = root;
+  // The traction before it, on the same particles, is good.
+  mix.more.insert(mix.more.find("[{") + 1, R"J({"type": "traction", "body": "a", "where": {"type": "half_space",
+    "point": [0.31, 0], "normal": [1, 0]}, "traction": ["1+x", "y"]}, )J");
   DeviceScene in_double(mix.text(), "double"), in_float(mix.text(), "float");
   CHECK_FALSE(stop_of(in_double));
   const std::optional<Stop> found = stop_of(in_float);
   REQUIRE(found);
   CHECK(found->step == 0);
-  CHECK_THAT(found->failure.formula, ContainsSubstring("/loads/1/pressure: is not a finite number at t = 0 s"));
+  CHECK_THAT(found->failure.formula, ContainsSubstring("/loads/2/pressure: is not a finite number at t = 0 s"));
   CHECK(std::isnan(found->failure.value));
   const double y = in_float.simulation.backend().body_state(0).position[2 * found->failure.particle + 1];
   CHECK(y > 0.2);

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "metrics/contact_traction.hpp"
-#include "metrics/normal_error.hpp"
+#include "metrics/pair_normal_error.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 #include "support/stacked_blocks.hpp"
@@ -214,17 +214,19 @@ TEST_CASE(
     node.force = {0, -force, 0};
   }
   Views views(scene.simulation);
-  const std::vector<NormalError> errors = normal_errors(views, nodes);
+  const std::vector<PairNormalError> errors = pair_normal_errors(views, nodes, 0.001);
   REQUIRE(errors.size() == 1);
   CHECK(errors[0].mean == Approx((3 * 10 + 1 * 30 + 0.02 * 50) / 4.02));
   CHECK(errors[0].largest == Approx(30));
   nodes.resize(3);
   nodes[2].force = {0, -0.04, 0};
-  CHECK(normal_errors(views, nodes)[0].largest == Approx(50));
+  CHECK(pair_normal_errors(views, nodes, 0.001)[0].largest == Approx(50));
+  for (ContactNode& node : nodes) node.force[1] *= 1e-15;  // the lower block rests, and the upper one has 7.5 kg m/s
+  CHECK(std::isnan(pair_normal_errors(views, nodes, 0.001)[0].mean));
   nodes.clear();
-  CHECK(std::isnan(normal_errors(views, nodes)[0].mean));
-  CHECK(std::isnan(normal_errors(views, nodes)[0].largest));
-  CHECK(normal_errors(views, nodes)[0].misfit == Approx(0).margin(1e-12));
+  CHECK(std::isnan(pair_normal_errors(views, nodes, 0.001)[0].mean));
+  CHECK(std::isnan(pair_normal_errors(views, nodes, 0.001)[0].largest));
+  CHECK(pair_normal_errors(views, nodes, 0.001)[0].misfit == Approx(0).margin(1e-12));
 }
 
 TEST_CASE("the normals of the widest gap under a block on a turned bed are half a degree off at most",

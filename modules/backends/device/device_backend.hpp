@@ -1,7 +1,7 @@
 #pragma once
 // The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
 // libcuda's, or the host's. Particles and nodes stay on the device. Once a step the host takes what phases have
-// summed; it evaluates walls and boxes, and reads particles in a step where contact looks at them or rigid bodies move.
+// summed; it evaluates walls and boxes, and reads particles in a step where contact looks at them.
 
 #include <array>
 #include <memory>

@@ -16,10 +16,10 @@ std::vector<LoadLaw<T>> laws_of_loads(const Experiment& experiment) {
   std::vector<LoadLaw<T>> laws;
   for (const Load& load : experiment.loads) {
     LoadLaw<T> law{};
-    law.type = load.type == LoadType::spring     ? load_of_spring
-               : load.type != LoadType::pressure ? load_of_force
-               : load.follower                   ? load_of_follower
-                                                 : load_of_pressure;
+    law.action = load.type == LoadType::spring     ? load_of_spring
+                 : load.type != LoadType::pressure ? load_of_force
+                 : load.follower                   ? load_of_follower
+                                                   : load_of_pressure;
     for (const ExternalForce kind : external_forces) law.gives |= int{load.gives(kind)} << static_cast<int>(kind);
     for (int c = 0; c < 3; ++c) {
       law.stiffness[c] = static_cast<T>(load.stiffness[c]);

@@ -113,14 +113,9 @@ Failure DeviceBackend<T>::failed_load(const Body<T>& body, int p) const {
   note_loads(body, failures);
   if (failures.first()) return *failures.first();
   // The host finds numbers in double precision where a kernel in float does not.
-  const auto at = static_cast<std::size_t>(p);
-  const BodyLoads& loads = loads_of(body);
-  std::size_t share = loads.first_shares()[at];
-  while (experiment_.loads[loads.shares()[share].load].type == LoadType::spring) ++share;
   LoadedParticle failed;
   LoadedParticles<T>(body).read(p, failed);
-  return force_failure(experiment_, &experiment_.loads[loads.shares()[share].load], body.number_of_body, at, failed.x,
-                       failed.X, time_);
+  return loads_of(body).failed_formula(static_cast<std::size_t>(p), failed, time_);
 }
 
 template <class T>

@@ -31,7 +31,8 @@ struct SceneSize {
       load_shares{};  ///< of each body: what its particles carry of loads at points; empty for none
 };
 
-/// What one particle of each body and one node of the grid take, for all velocity fields.
+/// What one particle of each body and one node of the grid take, for all velocity fields; not the shares of loads at points,
+/// whose number is known when particles are seeded.
 std::vector<TakenMemory> taken_by_one(const Experiment& experiment, const Plan& plan);
 
 /// All that grows with the particles, the nodes and the blocks of a scene, for all velocity fields, and what a run sums.

@@ -35,12 +35,12 @@ struct HeatOfBody {
 };
 
 /// How a load acts on the share of it that a particle carries.
-enum LoadKind { load_of_force, load_of_pressure, load_of_follower, load_of_spring };
+enum LoadAction { load_of_force, load_of_pressure, load_of_follower, load_of_spring };
 
 template <class T>
 struct LoadLaw {
-  int type;   ///< LoadKind
-  int gives;  ///< bit k: it is of kind k (ExternalForce)
+  int action;  ///< LoadAction
+  int gives;   ///< bit k: it is of kind k (ExternalForce)
   T stiffness[3], damping[3];
 };
 

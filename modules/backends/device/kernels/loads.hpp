@@ -40,20 +40,19 @@ MPM_HD bool add_loads(const Arguments<T>& a, int p, GivenByLoads<D, T>& sum) {
   const Mat<D, T> F = load_matrix<D>(a.particles.field[P::deformation], stride, p);
   for (int k = a.particles.loads.first[p]; k < a.particles.loads.first[p + 1]; ++k) {
     const LoadShare<T>& share = a.particles.loads.shares[k];
-    const LoadLaw<T>& load = a.load_laws[share.load];
-    if (!(load.gives >> a.load_kind & 1)) continue;
+    const LoadLaw<T>& law = a.load_laws[share.load];
+    if (!(law.gives >> a.load_kind & 1)) continue;
     const SharePlace<D, T> place(share, particle.x, particle.X, F);
     Vec<D, T> value;
-    if (load.type == load_of_spring) {
-      for (int c = 0; c < D; ++c)
-        value[c] = a.dashpots ? -load.damping[c] * a.particles.field[P::velocity][c * stride + p]
-                              : -load.stiffness[c] * (place.x[c] - place.X[c]);
+    if (law.action == load_of_spring) {
+      value = a.dashpots ? dashpot_force(law.damping, load<D>(a.particles.field[P::velocity], stride, p))
+                         : spring_force(law.stiffness, share, place, particle.x, particle.X);
     } else {
       value = Scene::load_value(share.load, place.x, place.X, a.formula_numbers);
       if (!all_finite(value)) return false;
     }
-    if (load.type == load_of_pressure || load.type == load_of_follower) {
-      const bool follower = load.type == load_of_follower;
+    if (law.action == load_of_pressure || law.action == load_of_follower) {
+      const bool follower = law.action == load_of_follower;
       add_pressure(share, place, particle.x, F, value[0], follower, follower && Scene::axisymmetric, sum);
     } else {
       add_force(share, place, value, sum);

@@ -1,4 +1,4 @@
-#include "metrics/normal_error.hpp"
+#include "metrics/pair_normal_error.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "simulation/contact_impulse.hpp"
+#include "simulation/point_bins.hpp"
 
 namespace mpm {
 namespace {
@@ -110,29 +111,54 @@ BodiesOfFields carried_bodies(Views& views) {
   return fields;
 }
 
-/// The pieces of the surfaces of one field that face a body of another and are within `reach` of it, metres: at the edge of
-/// a face the one beside it does not count, which leads away from the other body.
-std::vector<Piece> facing(const std::vector<CarriedBody>& field, const std::vector<CarriedBody>& other, double reach) {
+Vector3 vector3(const Vector& v) {
+  return {v[0], v[1], v[2]};
+}
+
+/// The pieces of the surfaces of one field that face a body of another and are within `reach` of it, metres, and near one
+/// of some places: at the edge of a face the one beside it does not count, which leads away from the other body.
+PointBins<Piece> facing(const std::vector<CarriedBody>& field, const std::vector<CarriedBody>& other, double reach,
+                        const std::vector<Vector>& places, int dimension) {
   const double half_right_angle = std::sqrt(0.5);
-  std::vector<Piece> pieces;
+  PointBins<Piece> pieces(dimension, reach);
+  for (const Vector& place : places) pieces.open_around(vector3(place));
+  const auto faces = [&](const Piece& piece) {
+    return std::any_of(other.begin(), other.end(), [&](const CarriedBody& met) {
+      return std::abs(met.distance(piece.place)) < reach &&
+             piece.normal.dot(met.outward(piece.place)) < -half_right_angle;
+    });
+  };
   for (const CarriedBody& body : field)
     for (const Piece& piece : body.surface())
-      if (std::any_of(other.begin(), other.end(), [&](const CarriedBody& met) {
-            return std::abs(met.distance(piece.place)) < reach &&
-                   piece.normal.dot(met.outward(piece.place)) < -half_right_angle;
-          }))
-        pieces.push_back(piece);
+      if (pieces.is_open(vector3(piece.place)) && faces(piece)) pieces.add(vector3(piece.place), piece);
   return pieces;
 }
 
 /// The angle between a unit vector and the normal of the piece that is nearest to a place, degrees; infinite without
 /// pieces.
-double angle_to_nearest(const std::vector<Piece>& pieces, const Vector& x, const Vector& direction) {
-  const auto nearest = std::min_element(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) {
-    return (a.place - x).squaredNorm() < (b.place - x).squaredNorm();
+double angle_to_nearest(const PointBins<Piece>& pieces, const Vector& x, const Vector& direction) {
+  double least = std::numeric_limits<double>::infinity(), angle = least;
+  pieces.for_each_near(vector3(x), [&](const Piece& piece) {
+    const double squared = (piece.place - x).squaredNorm();
+    if (!(squared < least)) return;
+    least = squared;
+    angle = std::atan2(direction.cross(piece.normal).norm(), direction.dot(piece.normal)) / degree;
   });
-  if (nearest == pieces.end()) return std::numeric_limits<double>::infinity();
-  return std::atan2(direction.cross(nearest->normal).norm(), direction.dot(nearest->normal)) / degree;
+  return angle;
+}
+
+/// The force that rounding may give the nodes of a scene, N: a few units in the last place of what moves.
+double force_of_rounding(Views& views, double dt) {
+  const Experiment& experiment = views.experiment();
+  const double epsilon = experiment.precision == Precision::single ? std::numeric_limits<float>::epsilon()
+                                                                   : std::numeric_limits<double>::epsilon();
+  double momentum = 0;
+  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
+    const BodyView& view = views.of(body);
+    for (std::size_t p = 0; p < view.count; ++p)
+      momentum += view.mass(p) * vector_of(view.state.velocity, p, experiment.dimension).norm();
+  }
+  return 8 * epsilon * momentum / dt;
 }
 
 /// The larger misfit of two fields; NaN where one is not known.
@@ -143,43 +169,56 @@ double larger_misfit(const std::vector<CarriedBody>& a, const std::vector<Carrie
   return largest;
 }
 
-NormalError error_of_pair(const Experiment& experiment, const BodiesOfFields& fields, int a, int b,
-                          const std::vector<ContactNode>& nodes) {
-  const auto &of_a = fields[static_cast<std::size_t>(a)], &of_b = fields[static_cast<std::size_t>(b)];
-  NormalError error{nothing, nothing, larger_misfit(of_a, of_b)};
-  if (std::isnan(error.misfit)) return error;
+/// A node of a pair that has a force.
+struct LoadedNode {
+  Vector place, normal;
+  double force;  ///< N
+};
+
+PairNormalError error_of_pair(const Experiment& experiment, const std::vector<CarriedBody>& of_a,
+                              const std::vector<CarriedBody>& of_b, const std::vector<LoadedNode>& nodes) {
+  PairNormalError error{nothing, nothing, larger_misfit(of_a, of_b)};
+  if (std::isnan(error.misfit) || nodes.empty()) return error;
+  std::vector<Vector> places;
   double largest_force = 0;
-  for (const ContactNode& node : nodes)
-    if (node.a == a && node.b == b) largest_force = std::max(largest_force, vector(node.force).norm());
-  if (!(largest_force > 0)) return error;
+  for (const LoadedNode& node : nodes)
+    places.push_back(node.place), largest_force = std::max(largest_force, node.force);
   const double reach = 2 * experiment.grid.cell_size;
-  const std::vector<Piece> pieces_of_a = facing(of_a, of_b, reach), pieces_of_b = facing(of_b, of_a, reach);
-  double sum = 0, forces = 0;
-  for (const ContactNode& node : nodes) {
-    const double force = vector(node.force).norm();
-    if (node.a != a || node.b != b || !(force > 0)) continue;
-    Vector x = Vector::Zero();
-    for (int c = 0; c < experiment.dimension; ++c)
-      x[c] = experiment.grid.lower[c] + experiment.grid.cell_size * node.node[static_cast<std::size_t>(c)];
-    const Vector normal = vector(node.normal);
-    const double angle = std::min(angle_to_nearest(pieces_of_a, x, normal), angle_to_nearest(pieces_of_b, x, -normal));
-    if (!std::isfinite(angle)) return error;  // nothing of them faces the other
-    sum += force * angle, forces += force;
-    if (force >= 0.01 * largest_force) error.largest = std::fmax(error.largest, angle);
+  const PointBins<Piece> pieces_of_a = facing(of_a, of_b, reach, places, experiment.dimension),
+                         pieces_of_b = facing(of_b, of_a, reach, places, experiment.dimension);
+  double sum = 0, forces = 0, largest = 0;
+  for (const LoadedNode& node : nodes) {
+    const double angle = std::min(angle_to_nearest(pieces_of_a, node.place, node.normal),
+                                  angle_to_nearest(pieces_of_b, node.place, -node.normal));
+    if (!std::isfinite(angle)) return error;  // nothing near the node faces the other body
+    sum += node.force * angle, forces += node.force;
+    if (node.force >= 0.01 * largest_force) largest = std::max(largest, angle);
   }
-  error.mean = sum / forces;
+  error.mean = sum / forces, error.largest = largest;
   return error;
 }
 
 }  // namespace
 
-std::vector<NormalError> normal_errors(Views& views, const std::vector<ContactNode>& nodes) {
+std::vector<PairNormalError> pair_normal_errors(Views& views, const std::vector<ContactNode>& nodes, double dt) {
   const Experiment& experiment = views.experiment();
   const BodiesOfFields fields = carried_bodies(views);
-  std::vector<NormalError> errors;
+  const double rounding = nodes.empty() ? 0 : force_of_rounding(views, dt);
+  std::vector<PairNormalError> errors;
   for (int a = 0; a < experiment.field_count; ++a)
-    for (int b = a + 1; b < experiment.field_count; ++b)
-      errors.push_back(error_of_pair(experiment, fields, a, b, nodes));
+    for (int b = a + 1; b < experiment.field_count; ++b) {
+      std::vector<LoadedNode> of_pair;
+      for (const ContactNode& node : nodes) {
+        const double force = vector(node.force).norm();
+        if (node.a != a || node.b != b || !(force > rounding)) continue;
+        Vector x = Vector::Zero();
+        for (int c = 0; c < experiment.dimension; ++c)
+          x[c] = experiment.grid.lower[c] + experiment.grid.cell_size * node.node[static_cast<std::size_t>(c)];
+        of_pair.push_back({x, vector(node.normal), force});
+      }
+      errors.push_back(
+          error_of_pair(experiment, fields[static_cast<std::size_t>(a)], fields[static_cast<std::size_t>(b)], of_pair));
+    }
   return errors;
 }
 
