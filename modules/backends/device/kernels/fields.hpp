@@ -46,7 +46,7 @@ struct NoParticleFields {
   static constexpr int artificial_work = -1;      ///< what that dissipated in it
   static constexpr int mean_dilation = -1;        ///< as the nodes average it
   static constexpr int deformation = -1;          ///< deformation gradient, for loads
-  static constexpr int second_moment = -1;                 ///< what `second_moments` makes
+  static constexpr int second_moment = -1;        ///< what `second_moments` makes
   static constexpr int temperature = -1, melted_fraction = -1;
   static constexpr int initial_position = -1;   ///< kept where the law of contact has springs or a formula asks
   static constexpr int contact_state = -1;      ///< what the law of contact keeps
