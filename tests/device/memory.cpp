@@ -3,6 +3,7 @@
 #include "backends/device/memory.hpp"
 
 #include <regex>
+#include <set>
 
 #include "backends/device/sorting.hpp"
 #include "device/device_support.hpp"
@@ -113,6 +114,11 @@ TEST_CASE("every array of a device is counted before a run begins as the driver 
     size.load_shares = {1, 0, 0};  // one particle is nearest to the point
     const std::map<std::string, double> counted = counted_by_name(experiment, size);
     CHECK(counted.size() == 14);
+    std::set<std::string> fixed;  // tables of a fixed length, and the nodes near rigid bodies
+    for (const auto& [name, bytes] : asked)
+      if (!counted.count(name)) fixed.insert(name);
+    CHECK(fixed == std::set<std::string>{"rigid bodies", "the edges of bodies", "the loads",
+                                         "the parameters of a material", "the parameters of contact"});
     for (auto [name, bytes] : counted) {
       INFO(name << ", " << precision);
       if (name == "exact sums") bytes += 9 * 4;  // beside them stands the largest exponent of each channel
