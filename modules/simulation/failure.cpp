@@ -96,7 +96,7 @@ const char* name_of(Cause cause) {
   return entry_of(cause).name;
 }
 
-bool holds(Precision precision, double value) {
+bool represents(Precision precision, double value) {
   const double most =
       precision == Precision::single ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
   return std::abs(value) <= most;
@@ -106,7 +106,7 @@ bool gives_numbers(const Experiment& experiment, const VectorExpression& formula
                    double time) {
   const Vector3 given = formula(x, X, time);
   for (int c = 0; c < experiment.dimension; ++c)
-    if (!holds(experiment.precision, given[c])) return false;
+    if (!represents(experiment.precision, given[c])) return false;
   if (experiment.precision != Precision::single) return true;
   float at[6], values[3];
   PointArrays<float> point;
@@ -128,7 +128,7 @@ Failure force_failure(const Experiment& experiment, const Load* load, int body, 
   } else {
     const Vector3 given = expression(x, X, time);
     for (int c = experiment.dimension - 1; c >= 0; --c) {
-      if (holds(experiment.precision, given[c])) continue;
+      if (represents(experiment.precision, given[c])) continue;
       failure.axis = c, failure.value = std::copysign(std::numeric_limits<double>::infinity(), given[c]);
     }
   }

@@ -56,7 +56,7 @@ struct Failure {
 };
 
 /// Whether a value is a number within the range of a precision.
-bool holds(Precision precision, double value);
+bool represents(Precision precision, double value);
 /// Whether a formula gives such numbers at a place x that began at X (m), also with its operations done in the scene's
 /// precision.
 bool gives_numbers(const Experiment& experiment, const VectorExpression& formula, const Vector3& x, const Vector3& X,

@@ -86,7 +86,7 @@ BodyLoads::BodyLoads(const Experiment& experiment, int body, const SeededBody& s
 
 bool BodyLoads::all_held(const Vector3& values) const {
   return std::all_of(values.begin(), values.end(),
-                     [&](double value) { return mpm::holds(experiment_.precision, value); });
+                     [&](double value) { return represents(experiment_.precision, value); });
 }
 
 bool BodyLoads::any() const {

@@ -42,7 +42,7 @@ const Claim textbook(page, "it slides with g sin 30° = # m/s²"), exact(page, "
     steps_average(page, "| average volume gradient | # m/s | # m/s |"),
     steps_gap(page, "| widest gap | # m/s | # m/s |"),
     friction(page, "= # m/s², and # m/s after the same time. The widest gap gives # m/s, the average # m/s."),
-    finer_average(page, "The average comes nearer, to # m/s."), holds(page, "is more than tan 30° = #.");
+    finer_average(page, "The average comes nearer, to # m/s."), rests(page, "is more than tan 30° = #.");
 
 constexpr double g = 9.81;
 
@@ -77,7 +77,7 @@ TEST_CASE("lesson 8: friction, and finer cells", "[lesson][friction]") {
   CHECK(end_of(gap, {rubs}).velocity == friction[2]);
   CHECK(end_of(average, {rubs}).velocity == friction[3]);
   CHECK(end_of(average, {finer}).velocity == finer_average[0]);
-  CHECK(1 / std::sqrt(3.0) == holds[0]);
+  CHECK(1 / std::sqrt(3.0) == rests[0]);
   // What is proposed at the end.
   for (const std::string& name : {average, gap}) CHECK(end_of(name, {"/transfer/type=flip"}).velocity > 1);
   CHECK(std::abs(end_of(gap, {"/contact/friction=0.6", "/bodies/1/geometry/upper=[0.4,0.1]"}).velocity) < 0.005);
