@@ -73,6 +73,9 @@ void run_group(BenchContext& context, const BenchScene& scene, const std::string
                               100 * measured.spread, measured.cost, counted(account.flops.value_or(0)), account.bytes,
                               counted(account.gflops()), counted(100 * account.gflops() / peak),
                               100 * account.gigabytes() / context.limits().one.memory.update});
+        if (option.name == "contact")
+          targets.push_back(
+              {"contact_" + scene.name, scene.name + " cost of contact over one body", measured.cost, 2, false});
         if (scene.name != "cube_3d") return;
         if (account.flops && option.figure && option.group != "precision")
           context.roofline.push_back({option.name, *account.flops / account.bytes, account.gflops()});

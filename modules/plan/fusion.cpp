@@ -111,9 +111,6 @@ std::string why_not_fused(const Step& step, const Experiment& experiment) {
     return experiment.filter->pointer + ": the filter reads the grid between gather and scatter";
   if (!of_another_shape.empty()) return of_another_shape;
   if (!experiment.grips.empty()) return "/grips: nodes are held as their particles are told for each step";
-  if (find_pass(step, Act::scatter_contact))
-    return experiment.contact ? experiment.contact->pointer + ": several velocity fields take two passes"
-                              : experiment.rigid_bodies.front().pointer + ": contact takes two passes";
   if (const Pass* conducts = find_pass(step, Act::conduct))
     return conducts->operators.front().because + ": temperature takes two passes";
   if (experiment.shape.plugin->shape().form == MPM_NODE_LIST)

@@ -103,11 +103,10 @@ bool joins_force(const FieldList& fields, ExternalForce external) {
   return external == ExternalForce::body_force && !fields.needs.keeps_all_apart && !fields.needs.launches;
 }
 
-/// Who asks for a force that is not merged into the momentum; empty where nobody in the scene does.
-std::string why_separate_force(const FieldList& fields) {
+/// Who beside contact asks for a force that is not merged into the momentum; empty where nobody in the scene does.
+std::string why_separate_force_beside_contact(const FieldList& fields) {
   const Experiment& experiment = fields.experiment;
   if (gathers_increment(experiment)) return FieldList::named(experiment.transfer) + ": gathers the change of velocity";
-  if (fields.plan.resolves_contact()) return experiment.why_it_meets() + ": acts before and after the forces";
   if (experiment.damping.acts()) return experiment.damping.pointer + ": acts on the change of velocity";
   for (const ExternalForce external : external_forces) {
     const std::string giver = experiment.giver_of(external);
@@ -126,6 +125,21 @@ std::string why_separate_force(const FieldList& fields) {
   return "";
 }
 
+std::string why_separate_force(const FieldList& fields) {
+  const Experiment& experiment = fields.experiment;
+  if (fields.plan.resolves_contact() && !gathers_increment(experiment))
+    return experiment.why_it_meets() + ": acts before and after the forces";
+  return why_separate_force_beside_contact(fields);
+}
+
+/// Whether particles that no other body comes near may add their forces to the momenta: contact alone wants them apart.
+bool wants_force_where_bodies_meet(const FieldList& fields) {
+  const bool for_others = fields.plan.has_ledger() || fields.experiment.notes_reactions() ||
+                          fields.needs.keeps_all_apart || fields.needs.launches ||
+                          !why_separate_force_beside_contact(fields).empty();
+  return fields.plan.resolves_contact() && !for_others;
+}
+
 /// Whether gravity's force has a field of its own. On the cpu backend the ledger takes its work from the masses, and
 /// without a ledger a device adds it to what else changes the momenta.
 bool keeps_weight_apart(const FieldList& fields) {
@@ -139,13 +153,13 @@ void force_fields(FieldList& fields) {
   const int D = experiment.dimension;
   const std::string why = why_separate_force(fields);
   const bool for_ledger = why.empty() && fields.plan.has_ledger();
-  if (!why.empty() || for_ledger || fields.needs.keeps_all_apart)
-    fields
-        .summed("force", "N", D, AtWall::vector, Folded::with_force,
-                !why.empty() ? why
-                : for_ledger ? why_for_ledger(fields.plan)
-                             : fields.why_apart())
-        .for_ledger = for_ledger;
+  if (!why.empty() || for_ledger || fields.needs.keeps_all_apart) {
+    Field& force = fields.summed("force", "N", D, AtWall::vector, Folded::with_force,
+                                 !why.empty() ? why
+                                 : for_ledger ? why_for_ledger(fields.plan)
+                                              : fields.why_apart());
+    force.for_ledger = for_ledger, force.for_contact = wants_force_where_bodies_meet(fields);
+  }
   for (const ExternalForce external : external_forces) {
     const std::string giver = experiment.giver_of(external);
     const bool ledger_alone = joins_force(fields, external);

@@ -217,6 +217,16 @@ nlohmann::ordered_json Plan::to_json() const {
   return json;
 }
 
+namespace {
+
+const char* where_forces_go(const Field* force) {
+  if (!force) return "merged into momentum";
+  return force->for_contact ? "in a field of its own where bodies are near each other, else merged into momentum"
+                            : "in a field of its own";
+}
+
+}  // namespace
+
 std::string Plan::to_text() const {
   std::ostringstream out;
   const auto print_field = [&](const Field& field) {
@@ -249,7 +259,7 @@ std::string Plan::to_text() const {
     out << "From one scatter to the next: particles advance in one launch"
         << (advance == Advance::at_once ? "" : ", but in steps that the ledger takes") << "\n";
   out << "Stencil: weights" << (stencil.gradients ? " and gradients" : " only, no gradients") << "; force "
-      << (node_field("force") ? "in a field of its own" : "merged into momentum") << "\n";
+      << where_forces_go(node_field("force")) << "\n";
   out << "Estimate: " << particles << " particles, " << nodes << " nodes, " << (particle_bytes + 524288) / 1048576
       << " MiB of particles (copies and scratch included), " << (grid_bytes + 524288) / 1048576 << " MiB of grid\n";
   return out.str();

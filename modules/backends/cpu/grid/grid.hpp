@@ -112,7 +112,13 @@ class Grid {
     bool rests = false;
   };
   int activate(const BlockCoordinates& at, std::uint64_t field_bits);
+  template <class Visit>
+  static void for_each_block_around(const BlockCoordinates& at, const std::array<int, 3>& low,
+                                    const std::array<int, 3>& high, Visit&& visit);
+  template <class Visit>
+  void for_each_image(std::size_t slot, Visit&& visit) const;
   void activate_mirrors();
+  void mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies);
   void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
                 const std::vector<std::int32_t>& slot_now);
   void list_faces();
@@ -147,6 +153,17 @@ class Grid {
 
 // ---- implementation ----------------------------------------------------------------------------------------------
 
+/// Calls visit(block) for the blocks from low to high, counted from one of them.
+template <int D, class T>
+template <class Visit>
+void Grid<D, T>::for_each_block_around(const BlockCoordinates& at, const std::array<int, 3>& low,
+                                       const std::array<int, 3>& high, Visit&& visit) {
+  for (int x = low[0]; x <= high[0]; ++x)
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int z = D == 3 ? low[2] : 0; z <= (D == 3 ? high[2] : 0); ++z)
+        visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
+}
+
 template <int D, class T>
 int Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
   const int next = static_cast<int>(found_.size()), slot = table_.insert(at, next);
@@ -158,29 +175,61 @@ int Grid<D, T>::activate(const BlockCoordinates& at, std::uint64_t field_bits) {
   return slot;
 }
 
+/// Calls visit(block) for the blocks that hold the images of a slot's nodes beyond a face.
+template <int D, class T>
+template <class Visit>
+void Grid<D, T>::for_each_image(std::size_t slot, Visit&& visit) const {
+  const BlockCoordinates at = found_[slot];
+  for (int axis = 0; axis < D; ++axis) {
+    if (inside(axis, at[axis])) continue;
+    for (int k = 0; k < block_side<D>; ++k) {
+      const int node = at[axis] * block_side<D> + k;
+      if (image(axis, node) == node || !folded_axis(axis, node > 0)) continue;
+      if (node < -padding(axis) || node > scene_.domain.cells[axis] + padding(axis)) continue;
+      BlockCoordinates other = at;
+      other[axis] = image(axis, node) >> block_bits<D>;
+      visit(other);
+    }
+  }
+}
+
 /// Activates the images of slots beyond a face, which folding needs; images of images follow as the list grows.
 template <int D, class T>
 void Grid<D, T>::activate_mirrors() {
   for (bool grew = true; grew;) {  // bits must reach images of images even when those were active already
     grew = false;
-    for (std::size_t slot = 0; slot < found_.size(); ++slot) {
-      const BlockCoordinates at = found_[slot];
-      for (int axis = 0; axis < D; ++axis) {
-        if (inside(axis, at[axis])) continue;
-        for (int k = 0; k < block_side<D>; ++k) {
-          const int node = at[axis] * block_side<D> + k;
-          if (image(axis, node) == node || !folded_axis(axis, node > 0)) continue;
-          if (node < -padding(axis) || node > scene_.domain.cells[axis] + padding(axis)) continue;
-          BlockCoordinates other = at;
-          other[axis] = image(axis, node) >> block_bits<D>;
-          const int known = table_.find(other);
-          if (known >= 0 && (field_bits_[known] | field_bits_[slot]) == field_bits_[known]) continue;
-          activate(other, field_bits_[slot]);
-          grew = true;
-        }
-      }
-    }
+    for (std::size_t slot = 0; slot < found_.size(); ++slot)
+      for_each_image(slot, [&](const BlockCoordinates& image) {
+        const int known = table_.find(image);
+        if (known >= 0 && (field_bits_[known] | field_bits_[slot]) == field_bits_[known]) return;
+        activate(image, field_bits_[slot]);
+        grew = true;
+      });
   }
+}
+
+/// Contact looks at nodes of shared slots alone, and at those near rigid bodies, which move between two sorts. What is
+/// folded onto a shared slot counts there.
+template <int D, class T>
+void Grid<D, T>::mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies) {
+  if (!scene_.plan.resolves_contact() || !scene_.experiment.rigid_bodies.empty()) return;
+  std::vector<char> meets(found_.size(), 0);
+  for (const std::uint32_t slot : shared_) meets[slot] = 1;
+  for (bool grew = !shared_.empty(); grew;) {
+    grew = false;
+    for (std::size_t slot = 0; slot < found_.size(); ++slot)
+      for_each_image(slot, [&](const BlockCoordinates& image) {
+        if (meets[slot] || !meets[table_.find(image)]) return;
+        meets[slot] = 1;
+        grew = true;
+      });
+  }
+  for (Particles<D, T>& particles : bodies)
+    for (Block<D>& block : particles.blocks) {
+      block.may_meet = false;
+      for_each_block_around(block.at, block.first_active, block.last_active,
+                            [&](const BlockCoordinates& at) { block.may_meet |= meets[table_.find(at)] != 0; });
+    }
 }
 
 template <int D, class T>
@@ -302,13 +351,6 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   table_.clear();
   found_.clear();
   field_bits_.clear();
-  const auto around = [](const BlockCoordinates& at, const std::array<int, 3>& low, const std::array<int, 3>& high,
-                         auto&& visit) {
-    for (int x = low[0]; x <= high[0]; ++x)
-      for (int y = low[1]; y <= high[1]; ++y)
-        for (int z = D == 3 ? low[2] : 0; z <= (D == 3 ? high[2] : 0); ++z)
-          visit(BlockCoordinates{at[0] + x, at[1] + y, at[2] + z});
-  };
   constexpr std::array<int, 3> below{-1, -1, -1}, above{1, 1, 1};
   std::vector<std::int32_t> slot_now(before.size(), -1);  // new slot of each old one
   const auto activate_again = [&](std::int32_t slot, std::uint64_t bits) {
@@ -323,16 +365,18 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
       if (block.has_neighbours())
         for (std::int32_t& slot : block.neighbours) slot = activate_again(slot, bits);
       else
-        around(block.at, below, above,
-               [&, k = 0](const BlockCoordinates& at) mutable { block.neighbours[k++] = activate(at, bits); });
+        for_each_block_around(block.at, below, above, [&, k = 0](const BlockCoordinates& at) mutable {
+          block.neighbours[k++] = activate(at, bits);
+        });
       if (block.first_active != below || block.last_active != above)
-        around(block.at, block.first_active, block.last_active,
-               [&](const BlockCoordinates& at) { activate(at, bits); });
+        for_each_block_around(block.at, block.first_active, block.last_active,
+                              [&](const BlockCoordinates& at) { activate(at, bits); });
     }
   activate_mirrors();
   shared_.clear();
   for (std::uint32_t slot = 0; slot < slots(); ++slot)
     if ((field_bits_[slot] & (field_bits_[slot] - 1)) != 0) shared_.push_back(slot);
+  mark_blocks_that_may_meet(bodies);
   // Forces have been used when a gather follows, and the next step's momenta come after it.
   for (Channel c = 0; keeps && c < channels(); ++c)
     if (has(c) && c != next_motion_ && field(c).folded != Folded::with_force) renumber(c, before, slot_now);

@@ -38,6 +38,14 @@ void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work
   work.clock.lap(Phase::tiles);
 }
 
+/// Adds the tiles of what a block has scattered.
+template <int D, class T, class Components>
+void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work& work,
+                                           const std::vector<Channel>& channels) {
+  for (const Channel c : channels)
+    if (block.may_meet || !is_of_contact_[c]) flush(body, block, work, c);
+}
+
 /// Takes the drift as it was measured; else the sum of the largest moves bounds it.
 template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::account_for_move() {
@@ -96,6 +104,7 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
                                                                                               const StepInfo& next) {
   const std::vector<Channel>& channels = scattered_channels(pass);
   for (const Channel c : channels) grid_.clear(c);
+  if (grid_.has(reached)) grid_.clear(reached);  // laws say anew what their nodes have reached
   for (auto& work : work_) work->moved = {};
   abandoned_ = false;
   const bool follows = scene_.plan.accounts_at(next.step);
@@ -119,11 +128,8 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
           step.observed ? nullptr : work.passing_motion.data());
       if (!moves) block.scattered_energy = block.kinetic_energy;  // it has the same velocities and moments
       end_reach(block, work);
-      for (const Channel c : channels)
-        if (abandoned_)
-          work.clear(c, kernels_.scalars);
-        else
-          flush(body, block, work, c);
+      if (!abandoned_) return flush(body, block, work, channels);
+      for (const Channel c : channels) work.clear(c, kernels_.scalars);
     });
   Fused result;
   if (failure_.any()) failed_forces_ = {};
@@ -399,7 +405,7 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
   }
   if (dilation >= 0) take_mean_dilations(chunk, work, velocity_gradient, work.b, static_cast<T>(request.dt));
   if (dissipation) request.dissipated_energy = work.scalar;
-  if (evaluates_for_scatter(pass)) want_of_material(pass, work, request);
+  if (evaluates_for_scatter(pass)) want_of_material(pass, chunk.block, work, request);
   const bool spreads_shocks = chunk.particles.artificial_pressure >= 0;
   alignas(64) T wave_speed[chunk_size<T>];
   if (spreads_shocks) request.wave_speed = wave_speed;

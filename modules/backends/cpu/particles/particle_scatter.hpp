@@ -59,7 +59,7 @@ Scattered ParticleStep<D, T, Components>::scatter(const Pass& pass, const StepIn
         if (scene_.list) block.far += static_cast<std::uint32_t>(work.lists.far_of_chunk);
       });
       if (extends) end_reach(block, work);
-      for (const Channel c : channels) flush(body, block, work, c);
+      flush(body, block, work, channels);
     });
     scatter_far(body, [&](const Chunk& chunk, Work& work) { scatter_chunk(pass, step, chunk, work, motion, false); });
   }
@@ -99,18 +99,25 @@ double ParticleStep<D, T, Components>::scattered_heat() const {
   return sum;
 }
 
+/// Whether what contact looks at is scattered: by the blocks alone that may come to a node where it acts.
+template <int D, class T, class Components>
+bool ParticleStep<D, T, Components>::scatters_contact(const Pass& pass, const Block<D>& block) {
+  return block.may_meet && pass.has(Act::scatter_contact);
+}
+
 /// Whether current volumes are scattered.
 template <int D, class T, class Components>
-bool ParticleStep<D, T, Components>::wants_volume(const Pass& pass) const {
-  return pass.has(Act::scatter_contact) || (pass.has(Act::scatter_heat) && grid_.has(heated_volume)) ||
+bool ParticleStep<D, T, Components>::wants_volume(const Pass& pass, const Block<D>& block) const {
+  return scatters_contact(pass, block) || (pass.has(Act::scatter_heat) && grid_.has(heated_volume)) ||
          (pass.has(Act::scatter_force) && mean_stress >= 0);
 }
 
 /// Asks the material for what a pass that scatters wants of it.
 template <int D, class T, class Components>
-void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const {
+void ParticleStep<D, T, Components>::want_of_material(const Pass& pass, const Block<D>& block, Work& work,
+                                                      mpm_material_batch& request) const {
   if (pass.has(Act::scatter_force)) request.kirchhoff_stress = work.stress;
-  if (wants_volume(pass)) request.volume_ratio = work.volume_ratio;
+  if (wants_volume(pass, block)) request.volume_ratio = work.volume_ratio;
 }
 
 /// Scatters a chunk to its tiles; returns false, and scatters nothing, when a particle is outside of them or of its
@@ -120,17 +127,19 @@ template <int D, class T, class Components>
 [[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step,
                                                                      const Chunk& chunk, Work& work, Channel momentum,
                                                                      bool evaluated) {
-  const bool separate = grid_.has(force), merged = pass.has(Act::scatter_force) && !separate;
+  const bool separate = grid_.has(force) && (chunk.block.may_meet || !is_of_contact_[force]);
+  const bool merged = pass.has(Act::scatter_force) && !separate;
   if (pass.has(Act::scatter_force)) fetch_initial_positions(chunk);
   const bool by_gradient = pass.has(Act::scatter_force) && !scene_.stress_by_affine;
   const bool loads_by_gradient = pass.has(Act::scatter_force) && chunk.body.loads && chunk.body.loads->at_points();
-  evaluate_shape(chunk, work, by_gradient || loads_by_gradient || pass.has(Act::scatter_contact));
+  const bool for_contact = scatters_contact(pass, chunk.block);
+  evaluate_shape(chunk, work, by_gradient || loads_by_gradient || for_contact);
   if (!stencils_hold(chunk, work)) return false;
   if (!place_to_scatter(chunk, work, pass.has(Act::scatter_momentum) && !pass.remap() && !work.far_only)) return false;
   work.clock.lap(Phase::weights);
-  if (!evaluated && (pass.has(Act::scatter_force) || wants_volume(pass))) {
+  if (!evaluated && (pass.has(Act::scatter_force) || wants_volume(pass, chunk.block))) {
     mpm_material_batch request{};
-    want_of_material(pass, work, request);
+    want_of_material(pass, chunk.block, work, request);
     update_material(chunk, request);
     if (request.kirchhoff_stress && chunk.particles.artificial_pressure >= 0) add_artificial_pressure(chunk, work);
     work.clock.lap(Phase::material);
@@ -158,7 +167,7 @@ template <int D, class T, class Components>
     scatter_forces(chunk, work, step.time);
     if (chunk.body.loads) scatter_loads(chunk, work, step.time);
   }
-  if (pass.has(Act::scatter_contact)) scatter_contact_fields(chunk, work);
+  if (for_contact) scatter_contact_fields(chunk, work);
   if (pass.has(Act::scatter_heat)) scatter_heat(chunk, work);
   if (chunk.particles.grip >= 0 && pass.has(Act::scatter_momentum) && !pass.remap())
     scatter_grips(chunk, work, step.time + step.dt);

@@ -315,8 +315,9 @@ class ParticleStep : NamedChannels {
                      bool evaluated);
   /// A fused pass asks its material for the strained state and for the stress that it scatters at once.
   static bool evaluates_for_scatter(const Pass& pass) { return pass.fused() && pass.has(Act::strain); }
-  bool wants_volume(const Pass& pass) const;
-  void want_of_material(const Pass& pass, Work& work, mpm_material_batch& request) const;
+  static bool scatters_contact(const Pass& pass, const Block<D>& block);
+  bool wants_volume(const Pass& pass, const Block<D>& block) const;
+  void want_of_material(const Pass& pass, const Block<D>& block, Work& work, mpm_material_batch& request) const;
   template <class Visit>
   void scatter_far(int body, Visit&& visit);
   void fill_masses(const Chunk& chunk, Work& work) const;
@@ -388,6 +389,7 @@ class ParticleStep : NamedChannels {
 
   void load_velocities(int body, const Block<D>& block, Work& work);
   void flush(int body, const Block<D>& block, Work& work, Channel channel);
+  void flush(int body, const Block<D>& block, Work& work, const std::vector<Channel>& channels);
   Moved gather_one(const Pass& pass, const StepInfo& step, const Chunk& chunk, Work& work);
   Gathered sum_gathered(bool moved);
   /// The sums that gather_chunk makes: velocities for the transfer, for the material, or of the filter's increment.
@@ -439,6 +441,7 @@ class ParticleStep : NamedChannels {
   /// The channels of each pass so far, by its acts and whether the ledger rests.
   std::deque<std::pair<std::uint64_t, std::vector<Channel>>> scattered_channels_;
   std::array<std::array<std::vector<Channel>, act_count>, 2> adds_;  ///< [in a fused pass][act]: channels to add to
+  std::vector<char> is_of_contact_;                                  ///< by channel, whether contact alone asks for it
   std::vector<std::array<Channel, 2>> grips_;  ///< channels of a grip's momentum at the end of the step, and before it
   std::vector<std::vector<GivenToGripped>> given_to_gripped_;  ///< [body][block * grips + grip]
   std::vector<std::unique_ptr<Work>> work_;

@@ -35,6 +35,7 @@ struct Block {
   std::array<std::int32_t, neighbour_count<D>> neighbours{-1};  ///< slots of the grid, see has_neighbours
   /// The blocks of the grid, from this one, that its particles' lists may reach: always the neighbours.
   std::array<std::int32_t, 3> first_active{-1, -1, -1}, last_active{1, 1, 1};
+  bool may_meet = true;                        ///< false: none of its particles reaches a node where contact may act
   ListBounds bounds;                           ///< bounds of the particles as the last gather moved them
   std::uint32_t far = 0;                       ///< number of particles whose lists leave the tile
   double kinetic_energy = 0, dissipated = 0;   ///< partial sums of the ledger, J
