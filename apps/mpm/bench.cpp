@@ -73,6 +73,7 @@ const std::vector<BenchSection>& bench_sections() {
       {"machine", "peak of multiply-adds and of memory", bench_machine},
       {"standard", "the standard scenes against the baseline, on 1 and N threads, by phase", bench_standard},
       {"options", "what each transfer, shape, filter, contact, ledger and double costs", bench_options},
+      {"contact", "what contact costs, bodies apart, and normals that look at particles", bench_contact},
       {"materials", "what each law costs: time, bytes of state, operations", bench_materials},
       {"freedom", "plugins against the same functors compiled in", bench_freedom},
       {"required", "bytes, passes, calls and instructions of what is asked, counted", bench_required},

@@ -96,6 +96,7 @@ const std::vector<BenchSection>& bench_sections();
 bench::SectionResult bench_machine(BenchContext& context);
 bench::SectionResult bench_standard(BenchContext& context);
 bench::SectionResult bench_options(BenchContext& context);
+bench::SectionResult bench_contact(BenchContext& context);
 bench::SectionResult bench_materials(BenchContext& context);
 bench::SectionResult bench_freedom(BenchContext& context);
 bench::SectionResult bench_required(BenchContext& context);

@@ -47,8 +47,12 @@ BenchSuite::BenchSuite(const Registry& registry, bool quick) : registry_(registr
   for (const auto& [name, edits] : file.at("materials").items()) materials_.push_back({name, edits_in(edits)});
   parameters_ = file.at("parameters").get<std::map<std::string, double>>();
   for (const Json& option : file.at("options")) {
-    BenchOption read{
-        option.at("name"), option.at("group"), option.value("motion", "deforming"), option.value("figure", true), {}};
+    BenchOption read{option.at("name"),
+                     option.at("group"),
+                     option.value("motion", "deforming"),
+                     option.value("section", "options"),
+                     option.value("figure", true),
+                     {}};
     for (const BenchScene& scene : scenes_) {
       Edits edits = edits_in(option.at("set"));
       if (option.contains("set_in"))

@@ -36,7 +36,7 @@ struct BenchMaterial {
 };
 
 struct BenchOption {
-  std::string name, group, motion;
+  std::string name, group, motion, section;
   bool figure = true;                                         ///< whether it is a point of the roofline
   std::vector<std::pair<std::string, Edits>> edits_of_scene;  ///< edits by name of the scene
 

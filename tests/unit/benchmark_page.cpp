@@ -17,8 +17,9 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-/// The pages of tables: that of the first machine, that of another, and that of the laws.
-constexpr const char *first_machine = "tables.md", *intel = "tables_intel.md", *laws = "materials.md";
+/// The pages of tables: that of the first machine, that of another, that of the laws, and that of contact.
+constexpr const char *first_machine = "tables.md", *intel = "tables_intel.md", *laws = "materials.md",
+                     *contact = "contact.md";
 
 /// The table below the first heading of a page that begins with these words, its header first.
 std::vector<Cells> table(const std::string& heading, const std::string& file = first_machine) {
@@ -28,7 +29,7 @@ std::vector<Cells> table(const std::string& heading, const std::string& file = f
   for (std::string line; std::getline(page, line);) {
     if (line.starts_with("#")) {
       if (below) break;
-      below = line.starts_with("### " + heading);
+      below = line.starts_with("### " + heading) || line.starts_with("## " + heading);
     }
     if (!below || !line.starts_with("| ")) continue;
     Cells cells;
@@ -149,7 +150,7 @@ TEST_CASE("the numbers of the benchmarks' page are those of its tables", "[docs]
 
 TEST_CASE("the numbers of another processor and of the laws are those of its tables", "[docs]") {
   Page page("docs/benchmarks/index.md");
-  page.keep_from_to("## On another processor", "## Scenes");
+  page.keep_from_to("## On another processor", "## What contact costs");
   const auto says = numbers_said_by(page);
   const std::string rate = "rate (M/s)", baseline = "/ baseline", peaks = "Peaks", update = "triad (GB/s)";
   says("whose memory moves # GB/s where that of the first moves #",
@@ -196,4 +197,68 @@ TEST_CASE("the numbers of another processor and of the laws are those of its tab
                   "at most 0.9 of Neo-Hookean", "hardly come to 0.9;", "at most 1.35 and does",
                   "at least 1.9 times Neo-Hookean"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
+}
+
+TEST_CASE("the numbers of what contact costs are those of its tables", "[docs]") {
+  Page page("docs/benchmarks/index.md");
+  page.keep_from_to("## What contact costs", "## Scenes");
+  const auto says = numbers_said_by(page);
+  const auto cost_in = [](const std::string& scene, const std::string& option) {
+    return number("What an option costs", {scene, option}, "cost / standard", contact);
+  };
+  const auto both = [&](const std::string& option) {
+    return std::vector{cost_in("cube_3d", option), cost_in("block_2d", option)};
+  };
+  says("| averaged gradients (the default) | # | # |", both("contact"));
+  says("| `widest_gap` | # | # |", both("contact, widest gap"));
+  says("| `linear_regression` | # | # |", both("contact, linear regression"));
+  says("| `logistic_regression` | # | # |", both("contact, logistic regression"));
+  const auto over = [&](const std::string& option, const std::string& other) {
+    return std::vector{cost_in("cube_3d", option) / cost_in("cube_3d", other),
+                       cost_in("block_2d", option) / cost_in("block_2d", other)};
+  };
+  says("Linear regression comes to # in the cube and # in the block", over("contact, linear regression", "contact"));
+  says("takes up to 200 rounds at each node, to # and #", over("contact, logistic regression", "contact"));
+  says("blocks of air between them cost # and # of what they cost without",
+       over("contact, bodies apart", "bodies apart"));
+  for (const double cost : both("contact")) CHECK(cost <= 2);
+  double spread = 0, spread_of_logistic = 0;
+  for (const auto& row : table("What an option costs", contact))
+    if (row[0] != "scene") {
+      double& largest = row[1] == "contact, logistic regression" ? spread_of_logistic : spread;
+      largest = larger(largest, std::stod(row[5]));
+    }
+  says("rounds spread by up to # %, those of logistic regression by # %", {spread, spread_of_logistic});
+  page.add_given({"29 November 2026", "to cost at most 2 and does", "at most 1.5 of the default normal",
+                  "takes up to 200 rounds"});
+  CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
+}
+
+TEST_CASE("the ceilings on the page of devices are those of its tables", "[docs]") {
+  Page page("docs/benchmarks/device.md");
+  const std::string tables = "device_tables.md";
+  const auto says = numbers_said_by(page);
+  const auto ceiling = [&](const std::string& scene, const std::string& kernel) {
+    return number("Kernels of " + scene + ", sm_90", {"`" + kernel + "`"}, "occupancy", tables);
+  };
+  says("`advance_0` (# % in the cube, # % in the block) and in `fold_masses` (# %)",
+       {ceiling("cube_3d_rest", "advance_0"), ceiling("block_2d_rest", "advance_0"),
+        ceiling("block_2d_rest", "fold_masses")});
+  CHECK(ceiling("cube_3d_rest", "fold_masses") == ceiling("block_2d_rest", "fold_masses"));
+  says("That of `add_teams` (# %) means nothing", {ceiling("cube_3d_rest", "add_teams")});
+  for (const std::string scene : {"cube_3d_rest", "block_2d_rest"})
+    for (const auto& row : table("Kernels of " + scene + ", sm_90", tables))
+      if (row[0].find("add_teams") == row[0].npos && row[0].find("advance") == row[0].npos && row[0] != "kernel")
+        CHECK(std::stod(row[5]) >= ceiling("cube_3d_rest", "fold_masses"));
+  double least = 100;
+  std::string where;
+  for (const std::string processor : {"sm_80", "sm_90"})
+    for (const auto& row : table("Shipped experiments, " + processor, tables))
+      if (row[0] != "experiment") {
+        CHECK(row[5] == "0");  // nothing spills
+        if (std::stod(row[6]) < least) least = std::stod(row[6]), where = row[0] + row[6];
+      }
+  says("shipped experiment is # %, of `advance_0` in `papers/plate_impact.json`", {least});
+  CHECK(where.find("`papers/plate_impact.json`") == 0);
+  CHECK(where.find("`advance_0`") != where.npos);
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "parity/rigid_scenes.hpp"
+#include "rigid_column.hpp"
 #include "simulation/imposed_value.hpp"
 #include "support/page.hpp"
 #include "support/stacked_blocks.hpp"
@@ -122,19 +123,6 @@ TEST_CASE("a block at rest presses a rigid floor with its weight", "[rigid]") {
 
 namespace {
 
-/// A block between slip walls: uniaxial strain along y, with the modulus M = E (1 - nu) / ((1 + nu)(1 - 2 nu)).
-const char* column = R"J({
-  "title": "column between rigid plates", "dimension": 2,
-  "grid": {"cell_size": 0.05, "domain": [[0, -0.5], [0.2, 1.5]], "boundaries": {"all": "slip"}},
-  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
-  "materials": {"m": {"type": "linear_elastic", "youngs_modulus": 1e6, "poisson_ratio": 0.3, "density": 1000}},
-  "bodies": [{"name": "column", "material": "m", "geometry": {"type": "box", "lower": [0, 0], "upper": [0.2, 1]}}],
-  "rigid_bodies": [
-    {"name": "anvil", "geometry": {"type": "box", "lower": [-0.2, -0.4], "upper": [0.4, 0]},
-     "contact": {"type": "frictionless"}},
-    {"name": "press", "geometry": {"type": "box", "lower": [-0.2, 1], "upper": [0.4, 1.4]}, "velocity": [0, 0],
-     "contact": {"type": "frictionless"}}],
-  "solver": {"time_step": "auto", "end_time": 0.3}})J";
 constexpr double modulus = 1e6 * 0.7 / (1.3 * 0.4), width = 0.2;
 
 }  // namespace
@@ -144,9 +132,10 @@ constexpr double modulus = 1e6 * 0.7 / (1.3 * 0.4), width = 0.2;
 TEST_CASE("a column between a fixed and a moving rigid plate bears M A u / H, to first order in the cells", "[rigid]") {
   for (const std::string transfer : {"flip", "apic"})
     for (const auto& [cell, bound] : {std::pair{0.05, 0.035}, {0.025, 0.0175}}) {
-      Scene scene(column, {set("/transfer/type", transfer), R"J(/damping={"viscous": 30})J",
-                           set("/grid/cell_size", digits(cell)),
-                           R"J(/rigid_bodies/1/velocity=[0, "t < 0.1 ? -0.02 : 0"])J", "/solver/end_time=0.4"});
+      Scene scene(
+          rigid_column::column,
+          {set("/transfer/type", transfer), R"J(/damping={"viscous": 30})J", set("/grid/cell_size", digits(cell)),
+           R"J(/rigid_bodies/1/velocity=[0, "t < 0.1 ? -0.02 : 0"])J", "/solver/end_time=0.4"});
       const Felt press = mean_after(scene, 0.3, 1), anvil = felt(scene, 0);
       const double expected = modulus * width * 0.002;
       INFO(transfer << ", cells of " << cell);
@@ -156,54 +145,14 @@ TEST_CASE("a column between a fixed and a moving rigid plate bears M A u / H, to
     }
 }
 
-// The same at eight places between two nodes. What a straight line through the displacements of the column's inner part has
-// at its two faces, beside where the plates are, is what the plates give way by.
-TEST_CASE("a flat rigid face gives way by a share of a cell's strain, by its place between nodes, as the pages say",
-          "[rigid][docs]") {
-  const double cell = 0.05, down = 0.002;
-  double least = 1, most = 0, mean = 0;
-  for (int place = 0; place < 8; ++place) {
-    const double lower = -0.5 - cell * place / 8;
-    Scene scene(column, {set("/bodies/0/seeding", "fitted"), R"J(/damping={"viscous": 30})J",
-                         R"J(/rigid_bodies/1/velocity=[0, "t < 0.1 ? -0.02 : 0"])J",
-                         "/grid/domain=[[0, " + digits(lower) + "], [0.2, " + digits(lower + 2) + "]]",
-                         "/solver/end_time=0.4"});
-    const std::vector<double> start = scene.body(0).position;
-    scene.run();
-    const std::vector<double> end = scene.body(0).position;
-    double count = 0, sums[2] = {}, products[2] = {};  // of Y and of u; of Y Y and of Y u
-    for (std::size_t k = 1; k < start.size(); k += 2) {
-      const double Y = start[k], u = end[k] - Y;
-      if (Y < 0.2 || Y > 0.8) continue;
-      count += 1, sums[0] += Y, sums[1] += u, products[0] += Y * Y, products[1] += Y * u;
-    }
-    const double slope = (count * products[1] - sums[0] * sums[1]) / (count * products[0] - sums[0] * sums[0]);
-    const double foot = (sums[1] - slope * sums[0]) / count, head = foot + slope;
-    CHECK(slope < -0.0015);
-    const double shares[2] = {foot / (cell * slope), (head + down) / (cell * -slope)};
-    std::printf("  plates %.3f cells above a node: the lower gives way by %.4f cells, the upper by %.4f\n", place / 8.0,
-                shares[0], shares[1]);
-    for (const double share : shares) least = smaller(least, share), most = larger(most, share), mean += share / 16;
-  }
-  for (const auto& printed : {Page("docs/contact.md")
-                                  .read("a flat face gives way by # to # of a cell's strain, by "
-                                        "where it lies between nodes (mean #)"),
-                              Page("docs/method.md")
-                                  .read("A flat face gives way by # to # of a cell's strain, by its "
-                                        "place between nodes (mean #,")}) {
-    CHECK(least == printed[0].rounded());
-    CHECK(most == printed[1].rounded());
-    CHECK(mean == printed[2].rounded());
-  }
-}
-
 // A compressive wave of the stress rho c v runs into the bar until it comes back from the free end.
 TEST_CASE("a bar that hits a rigid plate, or is hit by one, pushes it by A rho c v", "[rigid]") {
   const double c = std::sqrt(modulus / 1000), v = 0.1, expected = width * 1000 * c * v, back = 2 / c;
   for (const bool plate_moves : {false, true}) {
-    Scene scene(column, {set("/solver/end_time", digits(0.8 * back)), "/solver/courant=0.2",
-                         plate_moves ? "/rigid_bodies/0/velocity=[0, 0.1]" : "/bodies/0/velocity=[0, -0.1]",
-                         "/rigid_bodies/1/geometry/lower=[-0.2, 1.2]"});
+    Scene scene(rigid_column::column,
+                {set("/solver/end_time", digits(0.8 * back)), "/solver/courant=0.2",
+                 plate_moves ? "/rigid_bodies/0/velocity=[0, 0.1]" : "/bodies/0/velocity=[0, -0.1]",
+                 "/rigid_bodies/1/geometry/lower=[-0.2, 1.2]"});
     const Felt plate = mean_after(scene, 0.2 * back);
     INFO((plate_moves ? "plate" : "bar") << " moves");
     CHECK(plate.force[1] == Approx(-expected).epsilon(0.01));
@@ -217,8 +166,9 @@ TEST_CASE("work of a rigid body is a row of its own, and its energy is accounted
     for (const std::string filter : {"null", R"J({"type": "fmpm", "order": 2})J"})
       for (const std::string courant : {"0.3", "0.1"}) {
         if (transfer == "flip" && filter != "null") continue;
-        Scene scene(column, {set("/transfer/type", transfer), set("/filter", filter), set("/solver/courant", courant),
-                             R"J(/rigid_bodies/1/velocity=[0, "t < 0.1 ? -0.02 : 0"])J", "/solver/end_time=0.12"});
+        Scene scene(rigid_column::column,
+                    {set("/transfer/type", transfer), set("/filter", filter), set("/solver/courant", courant),
+                     R"J(/rigid_bodies/1/velocity=[0, "t < 0.1 ? -0.02 : 0"])J", "/solver/end_time=0.12"});
         double work = 0;
         while (!scene.simulation.finished()) {
           scene.simulation.step();
@@ -309,7 +259,7 @@ TEST_CASE("a rigid body's velocity that stops being a number stops the run with 
   for (const auto& [key, formula, place] :
        {std::tuple{"velocity", R"J([0, "sqrt(0.01-t)"])J", "/rigid_bodies/1/velocity/1"},
         std::tuple{"angular_velocity", "\"sqrt(0.01-t)\"", "/rigid_bodies/1/angular_velocity"}}) {
-    Scene scene(column, {std::string("/rigid_bodies/1/") + key + "=" + formula});
+    Scene scene(rigid_column::column, {std::string("/rigid_bodies/1/") + key + "=" + formula});
     INFO(formula);
     try {
       scene.run();

@@ -47,6 +47,8 @@ class Grid {
   explicit Grid(const Scene<D, T>& scene)
       : scene_(scene), fields_(scene.experiment.field_count), next_motion_(channel_of(scene.plan, "next_momentum")) {
     for (const Field* const field : channel_fields(scene.plan)) channels_.emplace_back().field = field;
+    if (const Operator* const contact = scene.plan.find(Act::scatter_contact))
+      for (const Channel c : channels_of(scene.plan, contact->adds)) channels_[c].for_contact = true;
   }
 
   Channel channels() const { return static_cast<Channel>(channels_.size()); }
@@ -73,6 +75,8 @@ class Grid {
   /// With `keeps`, what a gather may read keeps its values where blocks stay, and gets zeros elsewhere; all else holds
   /// anything afterwards.
   void rebuild(std::vector<Particles<D, T>>& bodies, const std::vector<int>& field_of_body, bool keeps = false);
+  /// Whether a slot's nodes may have mass of a velocity field. Where they have none all channels hold zero.
+  bool may_have_mass(int field, std::size_t slot) const { return (field_bits_[slot] >> field & 1) != 0; }
   /// Sets to zero what is scattered in a step.
   void clear();
   void clear(Channel c);
@@ -109,7 +113,7 @@ class Grid {
   struct Stored {
     const Field* field = nullptr;
     AlignedArray<T> data;
-    bool rests = false;
+    bool rests = false, for_contact = false;
   };
   int activate(const BlockCoordinates& at, std::uint64_t field_bits);
   template <class Visit>
@@ -119,6 +123,7 @@ class Grid {
   void for_each_image(std::size_t slot, Visit&& visit) const;
   void activate_mirrors();
   void mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies);
+  void clear_where_no_field_is();
   void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
                 const std::vector<std::int32_t>& slot_now);
   void list_faces();
@@ -146,6 +151,7 @@ class Grid {
   std::vector<BlockCoordinates> found_;
   std::vector<std::uint64_t> field_bits_;
   std::vector<std::uint32_t> shared_;
+  std::vector<char> near_shared_;  ///< by slot, whether particles that may meet others scatter there
   std::vector<FaceNodes> faces_;
   std::vector<BoxNodes> boxes_;
   std::vector<std::uint32_t> edge_nodes_;
@@ -212,7 +218,9 @@ void Grid<D, T>::activate_mirrors() {
 /// folded onto a shared slot counts there.
 template <int D, class T>
 void Grid<D, T>::mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies) {
-  if (!scene_.plan.resolves_contact() || !scene_.experiment.rigid_bodies.empty()) return;
+  const bool anywhere = !scene_.experiment.rigid_bodies.empty();
+  near_shared_.assign(found_.size(), anywhere);
+  if (!scene_.plan.resolves_contact() || anywhere) return;
   std::vector<char> meets(found_.size(), 0);
   for (const std::uint32_t slot : shared_) meets[slot] = 1;
   for (bool grew = !shared_.empty(); grew;) {
@@ -226,9 +234,13 @@ void Grid<D, T>::mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies)
   }
   for (Particles<D, T>& particles : bodies)
     for (Block<D>& block : particles.blocks) {
+      const auto around = [&](auto&& visit) {
+        for_each_block_around(block.at, block.first_active, block.last_active,
+                              [&](const BlockCoordinates& at) { visit(table_.find(at)); });
+      };
       block.may_meet = false;
-      for_each_block_around(block.at, block.first_active, block.last_active,
-                            [&](const BlockCoordinates& at) { block.may_meet |= meets[table_.find(at)] != 0; });
+      around([&](int slot) { block.may_meet |= meets[slot] != 0; });
+      if (block.may_meet) around([&](int slot) { near_shared_[slot] = 1; });
     }
 }
 
@@ -381,6 +393,7 @@ void Grid<D, T>::rebuild(std::vector<Particles<D, T>>& bodies, const std::vector
   for (Channel c = 0; keeps && c < channels(); ++c)
     if (has(c) && c != next_motion_ && field(c).folded != Folded::with_force) renumber(c, before, slot_now);
   for (Stored& channel : channels_) channel.data.require(std::size_t(fields_) * nodes() * 4);
+  clear_where_no_field_is();
   list_faces();
   list_boxes();
 }
@@ -427,12 +440,30 @@ T Grid<D, T>::largest_component(Channel c) const {
   });
 }
 
+/// Only where something has been scattered since.
 template <int D, class T>
 void Grid<D, T>::clear(Channel c) {
   T* const values = channels_[c].data.data();
-  scene_.team->for_each(std::size_t(fields_) * slots(), [&](std::size_t block) {
-    std::memset(values + block * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
+  const bool for_contact = channels_[c].for_contact;
+  const std::size_t count = slots();
+  scene_.team->for_each(fields_ * count, [&](std::size_t block) {
+    const std::size_t slot = block % count;
+    if (may_have_mass(static_cast<int>(block / count), slot) && (!for_contact || near_shared_[slot]))
+      std::memset(values + block * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
   });
+}
+
+/// Nothing is scattered there until the grid is built anew.
+template <int D, class T>
+void Grid<D, T>::clear_where_no_field_is() {
+  if (fields_ == 1) return;
+  const std::size_t count = slots();
+  for (Stored& channel : channels_)
+    scene_.team->for_each(fields_ * count, [&](std::size_t block) {
+      const std::size_t slot = block % count;
+      if (!may_have_mass(static_cast<int>(block / count), slot) || (channel.for_contact && !near_shared_[slot]))
+        std::memset(channel.data.data() + block * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
+    });
 }
 
 }  // namespace mpm::cpu

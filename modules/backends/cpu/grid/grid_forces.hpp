@@ -52,7 +52,7 @@ void GridStep<D, T>::take_gravity(double time) {
   }
 }
 
-/// Calls visit(field, first node, partial sums) for every block of nodes of every field.
+/// Calls visit(field, first node, partial sums) for every block of nodes that may have mass of a field.
 template <int D, class T>
 template <class Visit>
 void GridStep<D, T>::for_each_block(Visit&& visit) {
@@ -66,8 +66,9 @@ template <class Visit>
 void GridStep<D, T>::visit_blocks(Visit&& visit) {
   const std::size_t slots = grid_.slots();
   scene_.team->for_each(slots * grid_.fields(), [&](std::size_t i) {
-    visit(static_cast<int>(i / slots), static_cast<std::uint32_t>(i % slots) * block_nodes,
-          partials_.data() + partial_count * i);
+    const int field = static_cast<int>(i / slots);
+    if (grid_.may_have_mass(field, i % slots))
+      visit(field, static_cast<std::uint32_t>(i % slots) * block_nodes, partials_.data() + partial_count * i);
   });
 }
 
