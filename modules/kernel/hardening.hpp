@@ -102,6 +102,20 @@ struct TableHardening {
   }
 };
 
+/// The straight lines through points whose x grow, as many as there are `lines`; beyond the last the value stays.
+template <class T, int Points>
+MPM_HD TableHardening<T, Points> lines_through(const double* x, const double* y, int lines) {
+  TableHardening<T, Points> law{T(y[0]), {}, {}, {}};
+  for (int k = 0; k < Points; ++k) {
+    const bool used = k < lines;
+    law.start[k] = T(x[used ? k : lines]);
+    if (!used) continue;
+    law.width[k] = T(x[k + 1] - x[k]);
+    law.modulus[k] = T((y[k + 1] - y[k]) / (x[k + 1] - x[k]));
+  }
+  return law;
+}
+
 /// sigma = (A + B alpha^n) (1 + C ln(rate/rate_0)) (1 - T*^m),  T* = (T - T_room)/(T_melt - T_room) within 0 and 1, and
 /// rates below rate_0 count as rate_0. Johnson & Cook, Proc. 7th Int. Symp. on Ballistics (1983) 541.
 template <class T>

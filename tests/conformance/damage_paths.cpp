@@ -2,6 +2,7 @@
 // sides shrink by nu sigma/E, and the area below sigma(kappa) is Gc over the band width (Bazant & Oh, Mater. Struct. 16
 // (1983) 155).
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -14,12 +15,20 @@ using namespace mpm;
 using namespace mpm::test;
 using Mat3 = Mat<3, double>;
 
-constexpr double linear = 0, exponential = 1, bilinear = 2;
+constexpr double linear = 0, exponential = 1, bilinear = 2, tabulated = 3;
 /// Concrete: E = 30 GPa, ft = 3 MPa, Gc = 100 J/m^2, which is usable on bands below 2/3 m.
 constexpr double young = 30e9, poisson = 0.2, strength = 3e6, toughness = 100;
 
 Damage::Parameters concrete(double width, double softening = linear) {
-  return {young, poisson, 2400, strength, toughness, softening, 1, width};
+  return {young, poisson, 2400, strength, toughness, softening, 1, 0, 0, 0, 0, 0, 0, 0, 0, width};
+}
+/// The same with a table of openings over the last one and of shares of the strength.
+struct TablePoint {
+  double opening, share;
+};
+Damage::Parameters tabulated_concrete(double width, std::array<TablePoint, 4> t) {
+  return {young,      poisson,      2400,       strength,     toughness,  tabulated,    1,          t[0].opening,
+          t[0].share, t[1].opening, t[1].share, t[2].opening, t[2].share, t[3].opening, t[3].share, width};
 }
 
 /// A particle whose principal strains are imposed along the axes.
@@ -131,9 +140,72 @@ TEST_CASE("damage: bilinear softening bends at a third of the strength where 0.8
   }
 }
 
+TEST_CASE("damage: a table of softening goes through its points and dissipates Gc on bands of three widths") {
+  // A plateau, a steep and a gentle line, which no convex law has: the area below it is 0.2 + 0.14 + 0.06 + 0.045 + 0.005.
+  const std::array<TablePoint, 4> points{{{0.2, 1}, {0.4, 0.4}, {0.6, 0.2}, {0.9, 0.1}}};
+  const double openings[] = {0, 0.2, 0.4, 0.6, 0.9, 1}, shares[] = {1, 1, 0.4, 0.2, 0.1, 0};
+  double area = 0;
+  for (int k = 0; k < 5; ++k) area += (shares[k] + shares[k + 1]) / 2 * (openings[k + 1] - openings[k]);
+  CHECK(area == Approx(0.45).epsilon(1e-12));
+  for (const double width : {0.01, 0.02, 0.05}) {
+    const Damage::Parameters p = tabulated_concrete(width, points);
+    const double end = toughness / (strength * width * area);
+    const auto strain = [&](double opening, double share) { return share * strength / young + end * opening; };
+    check_curve(p, 0.5 * strength / young, 0.5 * strength);
+    for (int k = 0; k < 5; ++k)
+      for (const double s : {0.0, 0.3, 0.8, 1.0}) {
+        const double share = shares[k] + s * (shares[k + 1] - shares[k]);
+        check_curve(p, strain(openings[k] + s * (openings[k + 1] - openings[k]), share), share * strength);
+      }
+    check_curve(p, 1.5 * end, 0);
+    check_fracture_energy(p, 1.2 * end);
+  }
+}
+
+TEST_CASE("damage: a table without points is linear softening, and one with a point the bilinear law") {
+  for (const double width : {0.01, 0.05}) {
+    const std::pair<Damage::Parameters, Damage::Parameters> same[] = {
+        {tabulated_concrete(width, {}), concrete(width, linear)},
+        {tabulated_concrete(width, {{{0.8 / 3.6, 1.0 / 3}}}), concrete(width, bilinear)}};
+    for (const auto& [table, law] : same) {
+      Particle one(table), other(law);
+      for (const double along : {5e-5, 2e-4, 6e-4, 2e-3, 1e-2}) {
+        for (Particle* particle : {&one, &other}) particle->strain_to({{along, -0.1 * along, -0.1 * along}}, 7);
+        CAPTURE(width, along);
+        CHECK(one.state.damage == Approx(other.state.damage).epsilon(1e-9));
+        CHECK(one.heat == Approx(other.heat).epsilon(1e-9).margin(1e-9 * strength));
+        CHECK(one.stress()(0, 0) == Approx(other.stress()(0, 0)).epsilon(1e-9).margin(1e-9 * strength));
+      }
+      const auto limit = [](Damage::Parameters p) {
+        p.cell_size = 10;
+        return Damage::refusal(p, {3, 0}).limit;
+      };
+      CHECK(limit(table) == Approx(limit(law)).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE(
+    "damage: a table whose openings do not grow or whose shares do is refused, and bands that its steepest line does "
+    "not span") {
+  const auto refused = [](std::array<TablePoint, 4> points, double width = 0.01) {
+    const mpm_refusal refusal = Damage::refusal(tabulated_concrete(width, points), {3, 0});
+    return std::string(refusal.parameter ? refusal.parameter : "");
+  };
+  CHECK(refused({{{0.2, 1}, {0.4, 0.4}}}) == "");
+  CHECK(refused({{{0.4, 0.5}, {0.4, 0.4}}}) == "opening_2");
+  CHECK(refused({{{0.2, 0.5}, {0.4, 0.3}, {0.5, 0.31}}}) == "share_3");
+  // The middle line loses 0.9 on a way of 0.1.
+  const std::array<TablePoint, 4> steep{{{0.45, 1}, {0.55, 0.1}}};
+  const double area = 0.45 + 0.055 + 0.0225, widest = 0.1 / 0.9 / area * young * toughness / (strength * strength);
+  CHECK(refused(steep, 0.999 * widest) == "");
+  CHECK(refused(steep, 1.001 * widest) == "cell_size");
+  CHECK(Damage::refusal(tabulated_concrete(1, steep), {3, 0}).limit == Approx(widest).epsilon(1e-12));
+}
+
 TEST_CASE("damage: cells above 2 E Gc/ft^2 would snap back and are refused, with the largest usable size") {
   const auto refusal = [](double E, double ft, double Gc, double softening, double band, double size) {
-    return Damage::refusal({E, poisson, 2400, ft, Gc, softening, band, size}, {3, 0});
+    return Damage::refusal({E, poisson, 2400, ft, Gc, softening, band, 0, 0, 0, 0, 0, 0, 0, 0, size}, {3, 0});
   };
   for (const double law : {linear, exponential}) {
     CHECK(refusal(10e9, 5e6, 50, law, 1, 0.01).parameter == nullptr);
@@ -149,7 +221,7 @@ TEST_CASE("damage: cells above 2 E Gc/ft^2 would snap back and are refused, with
   }
   CHECK(refusal(10e9, 5e6, 50, bilinear, 1, 0.025).limit == Approx(0.024).epsilon(1e-12));
   // On the band of C11h: eps_f = 2e-3, above ft/E = 5e-4.
-  Particle particle({10e9, poisson, 2400, 5e6, 50, linear, 1, 0.01});
+  Particle particle({10e9, poisson, 2400, 5e6, 50, linear, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0.01});
   particle.strain_to({{1.25e-3, -poisson * 2.5e-4, -poisson * 2.5e-4}}, 4);
   CHECK(particle.stress()(0, 0) == Approx(2.5e6).epsilon(1e-9));
 }
@@ -232,7 +304,7 @@ TEST_CASE("damage: begins where the largest principal stress is the strength, an
 TEST_CASE("damage: no rounding damages what stays below the strength") {
   for (int k = 0; k < 2000; ++k) {
     const double ft = strength * (0.5 + 1e-3 * k);
-    Particle particle({young, poisson, 2400, ft, toughness, k % 3 + 0.0, 1, 0.01});
+    Particle particle({young, poisson, 2400, ft, toughness, k % 3 + 0.0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0.01});
     particle.pull_to(0.999 * ft / young, 0.999 * ft, 1);
     if (particle.state.damage != 0) FAIL("ft = " << ft << ", damage " << particle.state.damage);
     if (particle.heat != 0) FAIL("ft = " << ft << ", heat " << particle.heat);
@@ -330,7 +402,7 @@ TEST_CASE("damage: the fastest wave is that of the whole solid where anything is
   // Bounds of kernel/hencky.hpp, where the principal strains differ by x: longitudinal waves have lambda + 2 mu less the least
   // principal stress, shear waves 2 mu x/(1 - e^-2x) <= mu (x + sqrt(x^2 + 1)), and askew of the axes mu x^2/(2 (1 + x)) more.
   const auto modulus = [](double nu, const Vec<3, double>& e, double damage) {
-    const Damage::Constants<double> c({young, nu, 2400, strength, toughness, linear, 1, 0.05});
+    const Damage::Constants<double> c({young, nu, 2400, strength, toughness, linear, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0.05});
     const Damage::State<3, double> state{
         {{std::exp(e[0]), 0, 0, 0, std::exp(e[1]), 0, 0, 0, std::exp(e[2])}}, 0, damage};
     const double speed = Damage::wave_speed(c, state);

@@ -19,6 +19,11 @@ tension has a stress sigma(kappa) at kappa = ln s: E kappa up to `tensile_streng
     linear       a straight line down to 0 at kappa = 2 Gc/(ft b)
     exponential  ft exp(-(kappa - ft/E)/eps_s),   eps_s = Gc/(b ft) - ft/(2 E)
     bilinear     lines to ft/3 where a crack is open by 0.8 Gc/ft, and to 0 at 3.6 Gc/ft (concrete)
+    table        lines from (0, 1) through the points (opening_1, share_1) and so on to (1, 0)
+
+A table has up to four points. Their openings are over wf, that of a crack without strength, and their shares over ft. wf is not
+given: it is Gc/(ft A) with A the area below the lines, so that the crack dissipates Gc whatever the table. Without points it is
+`linear`. Openings that do not grow, and shares that do, are refused.
 
 b = `band_cells` times the cell size is the width of the band in which strain localises. The area below sigma(kappa) is Gc/b, so
 that a crack through a bar dissipates Gc = `fracture_energy` a unit of area on any grid. It is one cell for linear shapes and two for
@@ -26,7 +31,7 @@ quadratic B-splines: bars that crack along the cells then dissipate Gc, and 0.95
 does not know it.
 
 A band may not be so wide that it holds more elastic energy at its strength than its crack dissipates (snap-back): b < 2 E Gc/ft^2,
-for `bilinear` b < 1.2 E Gc/ft^2. An experiment with larger cells is refused, with the largest usable size.
+for `bilinear` b < 1.2 E Gc/ft^2, for a table b < E wf m/ft with m the least of opening over loss among its lines. An experiment with larger cells is refused, with the largest usable size.
 
 Exact in uniaxial tension at any strain, in Kirchhoff stress and logarithmic strain, and the dissipated energy for steps of any
 length. Damage begins where the largest principal stress is ft, if cracks open in one direction alone (in tension, shear, and strain
@@ -34,6 +39,11 @@ confined at the sides); two stresses alike along two axes damage from ft/sqrt(2 
 solid pulls there is no damage: nothing is ever crushed.
 
 Closed cracks are as stiff as the whole solid, and without friction.
+
+**Softening is isotropic: anisotropic softening is not offered.** One number d weakens all directions in which anything pulls, so that
+a particle which a crack has crossed bears no tension along the crack either, and a second crack across the first one costs nothing
+there. A law with a strength for each direction needs a damage tensor or planes of cracks that turn with the material, as state of
+its own; it would be another law and not another choice of this one. What is pressed is not weakened, in whatever direction.
 
 State: F, the largest kappa and d. Stress goes to the origin on unloading, without a strain that stays. Dissipation: psi(r) dd, never
 negative. J <= 0 is refused: the run stops and names the particle. In single precision strains have 1e-7 of rounding: ft/E must be

@@ -30,8 +30,12 @@ struct DamageState {
 struct Damage {
   struct Parameters {
     double youngs_modulus, poisson_ratio, density, tensile_strength, fracture_energy, softening, band_cells;
+    double opening_1, share_1, opening_2, share_2, opening_3, share_3, opening_4, share_4;
     double cell_size;  ///< m, of the grid
   };
+  MPM_HD static SofteningTable table_of(const Parameters& p) {
+    return {{p.opening_1, p.opening_2, p.opening_3, p.opening_4}, {p.share_1, p.share_2, p.share_3, p.share_4}};
+  }
   template <class T>
   struct Constants {
     T mu, lambda, inverse_density, rest_modulus;  ///< `rest_modulus` is M = lambda + 2 mu
@@ -51,7 +55,7 @@ struct Damage {
           lateral(T(p.poisson_ratio)),
           across(T(p.poisson_ratio / (1 - p.poisson_ratio))),
           softening(static_cast<SofteningLaw>(static_cast<int>(p.softening)), p.youngs_modulus, p.tensile_strength,
-                    p.fracture_energy, p.band_cells * p.cell_size, 1 - p.youngs_modulus / confined(p)) {}
+                    p.fracture_energy, p.band_cells * p.cell_size, 1 - p.youngs_modulus / confined(p), table_of(p)) {}
   };
 
   template <int D, class S>
@@ -182,10 +186,20 @@ struct Damage {
 #if MPM_HOST
   static constexpr unsigned traits = MPM_HYPERELASTIC | MPM_OBJECTIVE | MPM_DISSIPATES;
 
-  /// Refuses cells on which a band would snap back; the largest usable one is `limit`.
+  /// Refuses a table that is none, and cells on which a band would snap back; the largest usable one is `limit`.
   static mpm_refusal refusal(const Parameters& p, const mpm_refusal_case&) {
-    const double widest = widest_band(static_cast<SofteningLaw>(static_cast<int>(p.softening)), p.youngs_modulus,
-                                      p.tensile_strength, p.fracture_energy);
+    const auto law = static_cast<SofteningLaw>(static_cast<int>(p.softening));
+    const SofteningTable table = table_of(p);
+    constexpr const char* openings[] = {"", "opening_1", "opening_2", "opening_3", "opening_4"};
+    constexpr const char* shares[] = {"", "share_1", "share_2", "share_3", "share_4"};
+    for (int k = 1; law == SofteningLaw::table && k < table.lines; ++k) {
+      if (!(table.opening[k] > table.opening[k - 1]))
+        return {openings[k], "the openings of a table grow from point to point, from 0 to 1", table.opening[k - 1]};
+      if (!(table.share[k] <= table.share[k - 1]))
+        return {shares[k], "a crack does not become stronger as it opens: the shares of a table do not grow",
+                table.share[k - 1]};
+    }
+    const double widest = widest_band(law, p.youngs_modulus, p.tensile_strength, p.fracture_energy, table);
     const double largest = widest / p.band_cells;
     if (p.cell_size < largest) return {nullptr, nullptr, 0};
     return {
@@ -195,6 +209,10 @@ struct Damage {
         largest};
   }
 
+#define MPM_SOFTENING_POINT(k)                                                                                         \
+  MPM_NUMBER_PARAMETER(opening_##k, "", 0.0, 0.0, 1.0, MPM_BELOW_MAXIMUM,                                              \
+                       "of `table`: opening of point " #k " over that of a crack without strength; 0: no such point"), \
+      MPM_NUMBER_PARAMETER(share_##k, "", 0.0, 0.0, 1.0, 0, "of `table`: share of ft that is left at point " #k)
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus E, of the logarithmic strain"),
@@ -205,10 +223,15 @@ struct Damage {
                            "ft: uniaxial tensile stress (Kirchhoff) at which damage begins"),
       MPM_NUMBER_PARAMETER(fracture_energy, "J/m^2", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Gc: energy that a crack of unit area dissipates"),
-      MPM_CHOICE_PARAMETER(softening, "linear|exponential|bilinear", 0, "how stress falls as a crack opens"),
+      MPM_CHOICE_PARAMETER(softening, "linear|exponential|bilinear|table", 0, "how stress falls as a crack opens"),
       MPM_NUMBER_PARAMETER(band_cells, "", 1.0, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "width of the band in which a crack localises, in cells"),
+      MPM_SOFTENING_POINT(1),
+      MPM_SOFTENING_POINT(2),
+      MPM_SOFTENING_POINT(3),
+      MPM_SOFTENING_POINT(4),
   };
+#undef MPM_SOFTENING_POINT
   static constexpr mpm_state state[] = {
       {"deformation_gradient", "", "deformation gradient F", MPM_STATE_PLANE_DEFORMATION, MPM_INITIAL_IDENTITY},
       {"equivalent_strain", "", "largest equivalent strain so far, ft/E where it was less", MPM_STATE_SCALAR,

@@ -31,15 +31,7 @@ struct VonMisesTable : J2Plasticity {
   template <class T>
   MPM_HD static TableHardening<T, points> hardening_of(const Parameters& p) {
     const Table table(p);
-    TableHardening<T, points> law{T(p.yield_stress), {}, {}, {}};
-    for (int k = 0; k < points; ++k) {
-      const bool used = k < table.lines;
-      law.start[k] = T(table.strain[used ? k : table.lines]);
-      if (!used) continue;
-      law.width[k] = T(table.strain[k + 1] - table.strain[k]);
-      law.modulus[k] = T((table.stress[k + 1] - table.stress[k]) / (table.strain[k + 1] - table.strain[k]));
-    }
-    return law;
+    return lines_through<T, points>(table.strain, table.stress, table.lines);
   }
   template <class T>
   struct Constants : J2Constants<T, TableHardening<T, points>> {
