@@ -89,6 +89,7 @@ std::pair<Course, int> follow_into(const DriveExperiment& path, const fs::path& 
   drive::write_table(path, course, folder.root() / "metrics.csv");
   Json summary = drive::summary_of(path, course);
   int code = code_of(course);
+  summary["warnings"] = course.warnings;
   Json outcome{{"exit_code", code}, {"status", "done"}, {"reason", ""}};
   if (course.stop) {
     outcome = {{"exit_code", code},
@@ -104,6 +105,7 @@ std::pair<Course, int> follow_into(const DriveExperiment& path, const fs::path& 
     code = expectation_failed;
     outcome = {{"exit_code", code}, {"status", "expectation failed"}, {"reason", failed.front()}};
   }
+  for (const std::string& warning : course.warnings) std::cerr << "warning: " << warning << "\n";
   summary["outcome"] = outcome;
   folder.write_json("summary.json", summary);
   draw(path, course, folder.figures());
@@ -375,6 +377,7 @@ int drive_material(const DriveOptions& options) {
     if (options.out.empty()) {
       course = drive::follow(path, drive::Slopes::tangent, stop_requested);
       worst = std::max(worst, code_of(course));
+      for (const std::string& warning : course.warnings) std::cerr << "warning: " << warning << "\n";
     } else {
       auto [followed, code] = follow_into(path, options.out / standard.name, options.replace, options.command, text);
       course = std::move(followed), worst = std::max(worst, code);

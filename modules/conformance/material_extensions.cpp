@@ -388,6 +388,43 @@ void check_makes_energy(const Context& c) {
                      "hosts read the heat of materials with MPM_DISSIPATES alone");
 }
 
+/// Checks that clamps have names, and that none acts that is not declared or cannot act with these parameters.
+void check_clamps(const Context& c, const std::vector<Increments>& path) {
+  const auto* table = extension_of<mpm_material_clamps>(c.plugin);
+  if (!table || element_of(c.variant) != Element::double_precision) return;
+  bool named = table->count > 0 && table->count <= MPM_CLAMPS && table->clamps;
+  for (std::uint32_t k = 0; named && k < table->count; ++k) {
+    const mpm_clamp& clamp = table->clamps[k];
+    named = clamp.where && *clamp.where && clamp.unit && clamp.what && *clamp.what;
+  }
+  c.findings.require("clamps_are_named", named, "where each begins, its unit and what it does");
+  if (!named) return;
+  std::vector<double> bound(table->count);
+  table->bounds(c.parameters.data(), bound.data());
+  std::uint32_t possible = 0;
+  for (std::uint32_t k = 0; k < table->count; ++k) possible |= std::isnan(bound[k]) ? 0u : 1u << k;
+  const bool around_axis = c.variant.dimension == 2 && (c.plugin.material().traits & MPM_STRAINS_AROUND_AXIS);
+  for (const bool axisymmetric : {false, true}) {
+    if (axisymmetric && !around_axis) continue;
+    MaterialBatch batch = at_end(c, path, axisymmetric);
+    const std::vector<Array> before = batch.state;
+    const std::vector<void*> state = pointers(batch.state);
+    std::vector<std::uint32_t> acting(batch.gradient.stride(), ~0u);
+    mpm_clamp_batch request{};
+    request.count = static_cast<std::uint32_t>(batch.count), request.stride = batch.gradient.stride();
+    request.dimension = static_cast<std::uint32_t>(c.variant.dimension), request.axisymmetric = axisymmetric;
+    request.temperature = batch.temperature.data();
+    request.state = state.data(), request.acting = acting.data();
+    table->find[c.variant.dimension - 2](c.parameters.data(), &request);
+    bool possible_alone = true;
+    for (int lane = 0; lane < batch.count; ++lane) possible_alone &= (acting[lane] & ~possible) == 0;
+    const std::string name = " [" + c.variant.name() + (axisymmetric ? " axisymmetric]" : "]");
+    c.findings.require("clamps_can_act" + name, possible_alone,
+                       "no bit of a clamp that is not declared, or whose bound is not a number" + c.where);
+    c.findings.require("clamps_keep_state" + name, batch.state == before, "bit-equal" + c.where);
+  }
+}
+
 }  // namespace
 
 void check_material_extensions(const Context& c, const std::vector<Increments>& path) {
@@ -406,6 +443,8 @@ void check_material_extensions(const Context& c, const std::vector<Increments>& 
   check_temperature(c, path);
   check_cell_size(c, path);
   check_makes_energy(c);
+  c.findings.running("clamps", c.variant, c.where);
+  check_clamps(c, path);
 }
 
 }  // namespace mpm::conformance

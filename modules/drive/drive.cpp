@@ -250,7 +250,8 @@ class Follower {
       : path_(path),
         slopes_(slopes),
         stop_requested_(stop_requested),
-        point_(path.material(), path.experiment.dimension) {
+        point_(path.material(), path.experiment.dimension),
+        clamps_(*path.material().plugin, path.material().parameters) {
     course_.columns = point_.columns();
     Row start;
     start.response = point_.look();
@@ -263,6 +264,7 @@ class Follower {
       return stop(0, 0, 0, "the plugin does not take its own initial state", "check its parameters: mpm test-plugin");
     for (std::size_t k = 0; k < path_.stages.size() && !course_.stop && !course_.is_interrupted; ++k)
       follow_stage(static_cast<int>(k));
+    course_.warnings = clamps_.warnings(path_.experiment.materials.front().name);
     return std::move(course_);
   }
 
@@ -275,6 +277,7 @@ class Follower {
   }
 
   void add(Row row) {
+    if (clamps_.is_waiting()) point_.look_for_clamps(clamps_, row.time);
     for (const StateColumn& column : point_.columns()) row.state.push_back(point_.value(column));
     course_.rows.push_back(std::move(row));
   }
@@ -370,6 +373,7 @@ class Follower {
   const Slopes slopes_;
   const std::function<bool()>& stop_requested_;
   MaterialPoint point_;
+  ClampWatch clamps_;
   double density_ = 0;
   Course course_;
 };

@@ -68,8 +68,9 @@ struct Course {
   std::vector<StateColumn> columns;
   std::vector<Row> rows;  ///< the start, then a row a step
   std::optional<Stop> stop;
-  bool is_interrupted = false;  ///< it was asked to stop before its end
-  long iterations = 0;          ///< of Newton's method
+  bool is_interrupted = false;        ///< it was asked to stop before its end
+  long iterations = 0;                ///< of Newton's method
+  std::vector<std::string> warnings;  ///< of the material's clamps that acted
 };
 
 /// How the stress depends on the open components: by the plugin's tangent where it has one, or by central differences.

@@ -123,6 +123,16 @@ Response MaterialPoint::advance(const Matrix& velocity_gradient, double dt) {
   return update(fields_, &velocity_gradient, dt);
 }
 
+void MaterialPoint::look_for_clamps(ClampWatch& watch, double time) const {
+  std::vector<Field> copy = fields_;
+  const std::vector<void*> state = pointers_to(copy);
+  mpm_clamp_batch batch{};
+  batch.count = 1, batch.stride = MPM_LANES;
+  batch.dimension = static_cast<std::uint32_t>(dimension_);
+  batch.state = state.data();
+  watch.look(batch, time);
+}
+
 Symmetric MaterialPoint::stress_change(const Matrix& velocity_gradient, double dt, const Matrix& direction) const {
   std::vector<Field> copy = fields_;
   const std::vector<void*> pointers = pointers_to(copy);

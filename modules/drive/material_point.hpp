@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiment/clamps.hpp"
 #include "experiment/experiment.hpp"
 #include "kernel/tensor.hpp"
 #include "plugin/extensions.h"
@@ -55,6 +56,9 @@ class MaterialPoint {
   bool has_tangent() const { return tangent_ != nullptr; }
   /// The derivative of the trial Kirchhoff stress along a change of the velocity gradient, Pa.
   Symmetric stress_change(const Matrix& velocity_gradient, double dt, const Matrix& direction) const;
+
+  /// Looks which clamps of the material act in the present state.
+  void look_for_clamps(ClampWatch& watch, double time) const;
 
   /// The columns of the state, without the deformation gradient, which the driver knows.
   const std::vector<StateColumn>& columns() const { return columns_; }

@@ -192,3 +192,18 @@ struct Barotropic {
       MPM_NUMBER_PARAMETER(hugoniot_slope, "", 1.489, 0.01, unbounded, 0,                                            \
                            "s of `mie_gruneisen`, by which shocks are faster than sound; 1.489 is copper"),          \
       MPM_CHOICE_PARAMETER(tension, "kept|none", 0, "none: there is no pressure below zero")
+/// The clamp of such a material, whose State has a `log_volume_ratio`.
+#define MPM_EQUATION_OF_STATE_CLAMPS                                                                                \
+  static constexpr mpm_clamp clamps[] = {                                                                           \
+      {"below J =", "",                                                                                             \
+       "the pressure of mie_gruneisen goes on along its tangent, as its formula has a pole ahead; pressures there " \
+       "are too low"}};                                                                                             \
+  static void clamp_bounds(const Parameters& p, double* bound) {                                                    \
+    const bool has_pole =                                                                                           \
+        static_cast<EquationOfState>(static_cast<int>(p.equation_of_state)) == EquationOfState::mie_gruneisen;      \
+    bound[0] = has_pole ? 1 - mie_gruneisen_reach / p.hugoniot_slope : no_bound;                                    \
+  }                                                                                                                 \
+  template <class AnyState>                                                                                         \
+  static unsigned acting_clamps(const double* bound, const AnyState& state) {                                       \
+    return exp(state.log_volume_ratio) < bound[0] ? 1 : 0;                                                          \
+  }

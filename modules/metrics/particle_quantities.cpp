@@ -73,37 +73,50 @@ const Component& material_of(const Experiment& experiment, int body) {
 
 namespace {
 
+/// The state of some of a body's particles as a batch of its material takes it, padded with the last of them.
+struct StateBatch {
+  std::uint32_t stride = 0;
+  std::vector<std::vector<double>> fields;
+  std::vector<void*> pointers;
+  std::vector<double> temperature;  ///< empty where the material reads none
+
+  StateBatch(const Experiment& experiment, const Plugin& material, const BodyState& state,
+             const std::vector<std::size_t>& particles)
+      : stride(static_cast<std::uint32_t>(padded(particles.size()))) {
+    const std::size_t n = particles.size();
+    for (const mpm_state& declared : material.state()) {
+      const int components = state_components(kept_shape(declared, experiment.axisymmetric()), experiment.dimension);
+      const std::vector<double>& values = state.material_state.at(declared.name);
+      std::vector<double>& field = fields.emplace_back(static_cast<std::size_t>(components) * stride);
+      for (std::size_t p = 0; p < stride; ++p)
+        for (int c = 0; c < components; ++c)
+          field[c * std::size_t{stride} + p] = values[particles[std::min(p, n - 1)] * components + c];
+    }
+    for (auto& field : fields) pointers.push_back(field.data());
+    if (const auto kept = state.host_state.find("temperature");
+        kept != state.host_state.end() && extension_of<mpm_material_temperature>(material)) {
+      temperature.resize(stride);
+      for (std::size_t p = 0; p < stride; ++p) temperature[p] = kept->second[particles[std::min(p, n - 1)]];
+    }
+  }
+  const double* temperatures() const { return temperature.empty() ? nullptr : temperature.data(); }
+};
+
 /// Asks a material with these parameters for the quantities of some of a body's particles.
 void evaluate(const Experiment& experiment, const Plugin& material, const std::vector<double>& parameters,
               const BodyState& state, const std::vector<std::size_t>& particles, MaterialQuantities& result) {
   if (particles.empty()) return;
   const int D = experiment.dimension, symmetric = D == 2 ? 4 : 6;
-  const std::size_t n = particles.size(), stride = padded(n);
-
-  std::vector<std::vector<double>> fields;
-  std::vector<void*> pointers;
-  for (const mpm_state& declared : material.state()) {
-    const int components = state_components(kept_shape(declared, experiment.axisymmetric()), D);
-    const std::vector<double>& values = state.material_state.at(declared.name);
-    std::vector<double>& field = fields.emplace_back(components * stride);
-    for (std::size_t p = 0; p < stride; ++p)
-      for (int c = 0; c < components; ++c)
-        field[c * stride + p] = values[particles[std::min(p, n - 1)] * components + c];
-  }
-  for (auto& field : fields) pointers.push_back(field.data());
-  std::vector<double> temperature;
-  if (const auto kept = state.host_state.find("temperature");
-      kept != state.host_state.end() && extension_of<mpm_material_temperature>(material)) {
-    temperature.resize(stride);
-    for (std::size_t p = 0; p < stride; ++p) temperature[p] = kept->second[particles[std::min(p, n - 1)]];
-  }
+  const std::size_t n = particles.size();
+  StateBatch kept(experiment, material, state, particles);
+  const std::size_t stride = kept.stride;
 
   std::vector<double> stress(symmetric * stride), stored_energy(stride), wave_speed(stride), volume_ratio(stride);
   mpm_material_batch batch{};
   batch.count = batch.stride = static_cast<std::uint32_t>(stride);
   batch.dimension = static_cast<std::uint32_t>(D);
-  batch.state = pointers.data();
-  if (!temperature.empty()) batch.temperature = temperature.data();
+  batch.state = kept.pointers.data();
+  batch.temperature = kept.temperatures();
   batch.kirchhoff_stress = stress.data();
   batch.stored_energy = stored_energy.data();
   batch.wave_speed = wave_speed.data();
@@ -147,6 +160,22 @@ MaterialQuantities material_quantities(const Experiment& experiment, int body, c
     for (std::size_t p = 0; p < n; ++p)
       for (std::size_t k = 0; k < 3; ++k) result.stress[p * result.stress.size() / n + k] -= kept->second[p];
   return result;
+}
+
+void look_for_clamps(const Experiment& experiment, int body, const BodyState& state, bool melted, double time,
+                     ClampWatch& watch) {
+  std::vector<std::size_t> particles;
+  for (std::size_t p = 0; p < state.position.size() / static_cast<std::size_t>(experiment.dimension); ++p)
+    if (has_melted(experiment, body, state, p) == melted) particles.push_back(p);
+  if (particles.empty()) return;
+  const StateBatch kept(experiment, watch.material(), state, particles);
+  mpm_clamp_batch batch{};
+  batch.count = static_cast<std::uint32_t>(particles.size()), batch.stride = kept.stride;
+  batch.dimension = static_cast<std::uint32_t>(experiment.dimension);
+  batch.axisymmetric = experiment.axisymmetric();
+  batch.temperature = kept.temperatures();
+  batch.state = kept.pointers.data();
+  watch.look(batch, time);
 }
 
 bool has_melted(const Experiment& experiment, int body, const BodyState& state, std::size_t p) {

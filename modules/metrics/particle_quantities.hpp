@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiment/clamps.hpp"
 #include "simulation/backend.hpp"
 
 namespace mpm {
@@ -17,6 +18,10 @@ struct MaterialQuantities {
   std::vector<double> volume_ratio;   ///< J
 };
 MaterialQuantities material_quantities(const Experiment& experiment, int body, const BodyState& state);
+
+/// Looks for clamps of the body's material among the particles that have melted, or among those that have not.
+void look_for_clamps(const Experiment& experiment, int body, const BodyState& state, bool melted, double time,
+                     ClampWatch& watch);
 
 /// The von Mises stress of a Kirchhoff stress in the order of MaterialQuantities.
 double von_mises(const double* tau, int dimension);

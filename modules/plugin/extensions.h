@@ -201,6 +201,32 @@ typedef struct mpm_material_makes_energy {
   const char* where; /* in which states, and why, in one sentence */
 } mpm_material_makes_energy;
 
+/* ---- mpm.material.clamps -----------------------------------------------------------------------------------------
+ * Where the material goes on otherwise than its law says: a number is held at a bound, or a curve goes on along its
+ * tangent. What belongs to the law itself, as the yield of a solid, is no clamp. The host looks at its particles when it
+ * records and warns once of each clamp that acted: "WHERE BOUND UNIT, WHAT". */
+#define MPM_MATERIAL_CLAMPS_ID "mpm.material.clamps"
+#define MPM_MATERIAL_CLAMPS_VERSION 1u
+#define MPM_CLAMPS 32u /* of one material, at most */
+typedef struct mpm_clamp {
+  const char* where; /* a word and the name of what is compared: "below J =", "above T =" */
+  const char* unit;  /* of the bound */
+  const char* what;  /* what is clamped and what follows, without a capital at the start and a stop at the end */
+} mpm_clamp;
+typedef struct mpm_clamp_batch {
+  uint32_t count, stride, dimension, axisymmetric; /* axisymmetric: 1 where fields are kept as in such scenes */
+  const void* temperature;                         /* [stride], K, or null */
+  const void* const* state;                        /* declared state fields, each [components][stride], double */
+  uint32_t* acting;                                /* [stride] out: bit k where clamp k acts */
+} mpm_clamp_batch;
+typedef struct mpm_material_clamps {
+  uint32_t version, count;
+  const mpm_clamp* clamps; /* [count] */
+  /* bound[k], [count] out: where clamp k begins; not a number where it cannot act with these parameters */
+  void (*bounds)(const void* parameters, double* bound);
+  void (*find[2])(const void* parameters, const mpm_clamp_batch* batch); /* [dimension - 2] */
+} mpm_material_clamps;
+
 /* ---- mpm.material.temperature ------------------------------------------------------------------------------------
  * The material reads `temperature` of its batches: that of the particles at the call (docs/method.md, Temperature). */
 #define MPM_MATERIAL_TEMPERATURE_ID "mpm.material.temperature"

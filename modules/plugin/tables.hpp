@@ -10,6 +10,8 @@
 namespace mpm {
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 inline constexpr double required = std::numeric_limits<double>::quiet_NaN();
+/// The bound of a clamp that cannot act.
+inline constexpr double no_bound = std::numeric_limits<double>::quiet_NaN();
 }  // namespace mpm
 
 /// Rows of a parameter table; `member` names both the key in the file and the double in Parameters.

@@ -6,7 +6,7 @@
 namespace mpm::app {
 
 RunRecord::RunRecord(const Simulation& simulation, const Metrics& metrics)
-    : simulation_(simulation), latest_(metrics.initial()), watch_(simulation) {
+    : simulation_(simulation), latest_(metrics.initial()), watch_(simulation), clamps_(simulation), gases_(simulation) {
   extremes_.energy = metrics.initial().total_energy();
 }
 
@@ -32,6 +32,8 @@ void RunRecord::take(const Totals& totals, std::span<const double> chosen) {
     range.largest = std::fmax(range.largest, chosen[k]);
   }
   watch_.look();
+  clamps_.look();
+  gases_.look();
 }
 
 void RunRecord::save(ArchiveWriter& archive) const {
@@ -39,6 +41,8 @@ void RunRecord::save(ArchiveWriter& archive) const {
   archive.put("extremes", extremes_);
   archive.put("chosen", chosen_);
   archive.put("seen", watch_.seen());
+  clamps_.save(archive);
+  gases_.save(archive);
 }
 
 void RunRecord::restore(ArchiveReader& archive) {
@@ -46,6 +50,8 @@ void RunRecord::restore(ArchiveReader& archive) {
   archive.get("extremes", extremes_);
   archive.get("chosen", chosen_);
   archive.get("seen", watch_.seen());
+  clamps_.restore(archive);
+  gases_.restore(archive);
 }
 
 }  // namespace mpm::app

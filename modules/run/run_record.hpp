@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "metrics/metrics.hpp"
+#include "run/body_clamps.hpp"
+#include "run/gas_watch.hpp"
 #include "run/watch.hpp"
 
 namespace mpm::app {
@@ -35,6 +37,8 @@ class RunRecord {
   };
   const std::vector<Range>& chosen() const { return chosen_; }
   const Seen& seen() const { return watch_.seen(); }
+  const BodyClamps& clamps() const { return clamps_; }
+  const GasWatch& gases() const { return gases_; }
 
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
@@ -58,6 +62,8 @@ class RunRecord {
   Extremes extremes_;
   std::vector<Range> chosen_;
   Watch watch_;
+  BodyClamps clamps_;
+  GasWatch gases_;
   bool broken_off_ = false;
   bool state_lost_ = false;
 };

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
-#include "kernel/equation_of_state.hpp"
 #include "output/summary_value.hpp"
 #include "run/books.hpp"
 #include "run/limits.hpp"
@@ -189,26 +188,6 @@ std::string loneliness(const Evidence& run) {
          "particles a cell, or a shape that grows with the particle, \"cpdi\" (docs/lessons/5_large_stretch.md)";
 }
 
-/// Fluids that were compressed beyond where Mie-Gruneisen's formula holds.
-std::string clamped_pressure(const Evidence& run) {
-  const double smallest = output::number_at(run.summary, "stability.smallest_volume_ratio");
-  for (const MaterialSpecification& material : run.experiment().materials) {
-    const auto& declared = material.component.plugin->parameters();
-    const auto has = [&](std::string_view name) {
-      return std::any_of(declared.begin(), declared.end(), [&](const mpm_parameter& p) { return p.name == name; });
-    };
-    if (!has("equation_of_state") || !has("hugoniot_slope")) continue;
-    const auto form = static_cast<int>(material.component.parameter("equation_of_state"));
-    if (static_cast<EquationOfState>(form) != EquationOfState::mie_gruneisen) continue;
-    const double last = 1 - mie_gruneisen_reach / material.component.parameter("hugoniot_slope");
-    if (smallest < last)
-      return "particles were compressed to J = " + digits(smallest) + ": below J = " + digits(last) +
-             " the pressure of material \"" + material.name +
-             "\" goes on along its tangent, as mie_gruneisen has a pole ahead; pressures there are too low";
-  }
-  return "";
-}
-
 /// Contact that acted while nothing touched.
 std::string early_contact(const Evidence& run) {
   constexpr double most_of_it = 0.1;
@@ -242,10 +221,11 @@ std::vector<std::string> warnings_of(const Simulation& simulation, const Metrics
                                      const Json& summary) {
   const Evidence run{simulation, metrics, rows, summary};
   std::vector<std::string> all;
-  for (const auto warning :
-       {rim_steps, coarse_contact, early_contact, sliding_block, tent_steps, crossings, loneliness, numerical_loss,
-        unexplained_loss, books, images, filter_growth, few_entries, clamped_pressure})
+  for (const auto warning : {rim_steps, coarse_contact, early_contact, sliding_block, tent_steps, crossings, loneliness,
+                             numerical_loss, unexplained_loss, books, images, filter_growth, few_entries})
     if (const std::string text = warning(run); !text.empty()) all.push_back(text);
+  for (std::string& text : rows.clamps().warnings()) all.push_back(std::move(text));
+  for (std::string& text : rows.gases().warnings()) all.push_back(std::move(text));
   if (const ParticleChanges* const changes = simulation.particle_changes())
     for (std::string& text : changes->warnings()) all.push_back(std::move(text));
   return all;

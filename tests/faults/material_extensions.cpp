@@ -7,6 +7,7 @@
 #include "filters/fmpm/fmpm.hpp"
 #include "filters/xpic/xpic.hpp"
 #include "materials/drucker_prager/drucker_prager.hpp"
+#include "materials/snow/snow.hpp"
 #include "plugin/extension_of.hpp"
 #include "shapes/bspline_quadratic/bspline_quadratic.hpp"
 #include "support/catch.hpp"
@@ -173,6 +174,37 @@ struct ExcusedSand : CoolingSand {
 };
 constexpr mpm_material_makes_energy nowhere{MPM_MATERIAL_MAKES_ENERGY_VERSION, 0, ""};
 
+/// Snow whose clamps have no name, or act where they were said not to.
+constexpr mpm_clamp nameless[] = {{"below J =", "", ""}};
+void no_bounds(const void*, double* bound) {
+  bound[0] = std::nan("");
+}
+void finds(const mpm_clamp_batch* q, std::uint32_t bits) {
+  for (std::uint32_t k = 0; k < q->count; ++k) q->acting[k] = bits;
+}
+void finds_none(const void*, const mpm_clamp_batch* q) {
+  finds(q, 0);
+}
+void finds_first(const void*, const mpm_clamp_batch* q) {
+  finds(q, 1);
+}
+void finds_stranger(const void*, const mpm_clamp_batch* q) {
+  finds(q, 2);
+}
+void finds_and_moves(const void*, const mpm_clamp_batch* q) {
+  finds(q, 0);
+  *static_cast<double*>(const_cast<void*>(q->state[0])) += 1e-3;
+}
+constexpr mpm_clamp named[] = {{"below J =", "", "nothing goes on"}};
+constexpr mpm_material_clamps nameless_clamps{
+    MPM_MATERIAL_CLAMPS_VERSION, 1, nameless, &no_bounds, {&finds_none, &finds_none}};
+constexpr mpm_material_clamps impossible_clamps{
+    MPM_MATERIAL_CLAMPS_VERSION, 1, named, &no_bounds, {&finds_first, &finds_first}};
+constexpr mpm_material_clamps strange_clamps{
+    MPM_MATERIAL_CLAMPS_VERSION, 1, named, &no_bounds, {&finds_stranger, &finds_stranger}};
+constexpr mpm_material_clamps moving_clamps{
+    MPM_MATERIAL_CLAMPS_VERSION, 1, named, &no_bounds, {&finds_and_moves, &finds_and_moves}};
+
 struct RefusesTangent : NeoHookean {
   static constexpr const char* no_tangent = "its stress is looked up in a table";
 };
@@ -261,6 +293,15 @@ TEST_CASE("negative heat is caught, and a material that says that it makes energ
   check_caught(material_of<ExcusedSand>, "energy_balance");
   check_caught(with_extension<nowhere>(material_of<VonMises>), "makes_energy_says_where");
   check_caught(with_extension<nowhere>(material_of<NeoHookean>), "makes_energy_dissipates");
+}
+
+TEST_CASE("clamps without a name, or that act where they cannot, are caught") {
+  CHECK(was_checked(material_of<Snow>, "clamps_can_act"));
+  CHECK_FALSE(was_checked(material_of<NeoHookean>, "clamps_can_act"));
+  check_caught(with_extension<nameless_clamps>(material_of<VonMises>), "clamps_are_named");
+  check_caught(with_extension<impossible_clamps>(material_of<VonMises>), "clamps_can_act");
+  check_caught(with_extension<strange_clamps>(material_of<VonMises>), "clamps_can_act");
+  check_caught(with_extension<moving_clamps>(material_of<VonMises>), "clamps_keep_state");
 }
 
 TEST_CASE("temperatures and cell sizes that do nothing are caught") {

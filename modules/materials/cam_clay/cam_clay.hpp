@@ -231,6 +231,18 @@ struct CamClay : HenckySolid {
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
+  static constexpr mpm_clamp clamps[] = {
+      {"below J_p =", "",
+       "p_c grows along a straight line and no longer exponentially, so that clay that softens does not jump; take a "
+       "smaller hardening, or a larger Young's modulus"},
+  };
+  static void clamp_bounds(const Parameters& p, double* bound) {
+    bound[0] = p.hardening > 0 ? exp(-Constants<double>(p).hardening.from) : no_bound;
+  }
+  template <class AnyState>
+  static unsigned acting_clamps(const double* bound, const AnyState& state) {
+    return state.plastic_volume_ratio < bound[0] ? 1 : 0;
+  }
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain"),

@@ -125,6 +125,7 @@ struct HerschelBulkley {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  MPM_EQUATION_OF_STATE_CLAMPS
   static constexpr mpm_parameter parameters[] = {
       MPM_EQUATION_OF_STATE_PARAMETERS,
       MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "density at rest"),

@@ -22,7 +22,7 @@ Pressures are those above p0, which the surroundings of the body have too: a fre
 wall is that beyond p0. Two gases that meet, as in a shock tube, must have one p0: give a gas of another state the density
 that it has after it was brought to p0 without heat, rho (p0/p)^(1/g), and the body an `initial_displacement` that makes it as dense
 as it is. There is no vacuum around a gas: gaps that open in it are at p0, and a gas that is torn, whose pressure falls to
-nothing, is pulled together by p0.
+nothing, is pulled together by p0. A run warns of gas that expands through a free surface, and of two gases that meet.
 
 Heat does not flow, and there is no shear viscosity: `newtonian_fluid` has one.
 

@@ -15,6 +15,7 @@ MPM_EXPORT_PLUGIN(
 
 with A = `yield_stress`, B = `hardening_coefficient`, n = `hardening_exponent`, C = `rate_coefficient`, rate_0 = `reference_rate`, m =
 `thermal_exponent`. T* is kept within 0 and 1, and rates below rate_0 count as rate_0 (the logarithm would soften without bound).
+A run warns once of particles beyond either bound of T*, and not of the rate's, below which whatever is slow lies.
 The paper's OFHC copper: 90 MPa, 292 MPa, 0.31, 0.025, 1/s, 1.09, melting at 1356 K; 4340 steel: 792 MPa, 510 MPa, 0.26, 0.014,
 1/s, 1.03, 1793 K.
 

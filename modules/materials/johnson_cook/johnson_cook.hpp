@@ -32,6 +32,17 @@ struct JohnsonCook : J2Plasticity {
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr mpm_state state[] = {MPM_J2_STATE};
+  static constexpr mpm_clamp clamps[] = {
+      {"above T =", " K", "T* stays at 1: the metal has melted, and flows without any strength"},
+      {"below T =", " K", "T* stays at 0: cold makes the metal no stronger than at room_temperature"},
+  };
+  static void clamp_bounds(const Parameters& p, double* bound) {
+    bound[0] = p.melting_temperature, bound[1] = p.room_temperature;
+  }
+  template <class AnyState>
+  static unsigned acting_clamps(const double* bound, const AnyState& state) {
+    return (state.temperature > bound[0] ? 1u : 0u) | (state.temperature < bound[1] ? 2u : 0u);
+  }
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain"),

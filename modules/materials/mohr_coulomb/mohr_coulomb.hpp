@@ -170,6 +170,16 @@ struct MohrCoulomb : HenckySolid {
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
+  static constexpr mpm_clamp clamps[] = {
+      {"above psi =", " rad", "dilation_angle counts as friction_angle, since the law would make energy"},
+  };
+  static void clamp_bounds(const Parameters& p, double* bound) {
+    bound[0] = p.dilation_angle > p.friction_angle ? p.friction_angle : no_bound;
+  }
+  template <class AnyState>
+  static unsigned acting_clamps(const double* bound, const AnyState&) {
+    return bound[0] == bound[0] ? 1 : 0;
+  }
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain"),

@@ -112,6 +112,18 @@ struct MuI : HenckySolid {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_clamp clamps[] = {
+      {"below mu_2 =", "", "limit_friction counts as static_friction, so that friction does not depend on the rate"},
+      {"below", " kg/m^3", "critical_density counts as density, so that the packing begins in contact"},
+  };
+  static void clamp_bounds(const Parameters& p, double* bound) {
+    bound[0] = p.limit_friction < p.static_friction ? p.static_friction : no_bound;
+    bound[1] = p.critical_density > 0 && p.critical_density < p.density ? p.density : no_bound;
+  }
+  template <class AnyState>
+  static unsigned acting_clamps(const double* bound, const AnyState&) {
+    return (bound[0] == bound[0] ? 1u : 0u) | (bound[1] == bound[1] ? 2u : 0u);
+  }
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus of the grains' packing at small strain"),

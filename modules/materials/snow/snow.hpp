@@ -232,6 +232,18 @@ struct Snow {
   static constexpr const char* makes_energy =
       "where snow parts under pressure from its sides, and where xi J_P theta_c is large: each stretch returns to its "
       "bound by itself, whatever the stress along it, and hardening scales the stored energy";
+  static constexpr mpm_clamp clamps[] = {
+      {"below J_P =", "", "the moduli of snow that is compacted stay at largest_hardening times those at rest"},
+      {"above J_P =", "", "the moduli of snow that has come loose stay at those at rest over largest_hardening"},
+  };
+  static void clamp_bounds(const Parameters& p, double* bound) {
+    const double reach = p.hardening > 0 ? log(p.largest_hardening) / p.hardening : no_bound;
+    bound[0] = reach < 1 ? 1 - reach : no_bound, bound[1] = 1 + reach;
+  }
+  template <class AnyState>
+  static unsigned acting_clamps(const double* bound, const AnyState& state) {
+    return (state.plastic_volume_ratio < bound[0] ? 1u : 0u) | (state.plastic_volume_ratio > bound[1] ? 2u : 0u);
+  }
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "Young's modulus at small strain before hardening; 140 kPa in the paper"),

@@ -1,7 +1,7 @@
 #pragma once
 // The extensions of extensions.h as the SDK makes them from a functor. Some every functor gets for nothing (costs, a
 // material's trial and tangent); others come with a member of the functor: `box` and its fellows, `basis_order`,
-// `courant_limits`, `step_limit`, `projects`, `makes_energy`, `refusal`, a `temperature` at the end of State, a
+// `courant_limits`, `step_limit`, `projects`, `makes_energy`, `clamps`, `refusal`, a `temperature` at the end of State, a
 // `cell_size` at the end of Parameters.
 
 #include <cmath>
@@ -81,6 +81,14 @@ concept RefusesTangent = requires {
 template <class F>
 concept MakesEnergy = requires {
   { F::makes_energy } -> std::convertible_to<const char*>;
+};
+
+/// A material that is clamped somewhere names its clamps: `static constexpr mpm_clamp clamps[]`, with `static void
+/// clamp_bounds(const Parameters&, double* bound)` and, of a State or AxisymmetricState of double, `static unsigned
+/// acting_clamps(const double* bound, const State&)` with bit k where clamp k acts.
+template <class F>
+concept Clamped = requires {
+  F::clamps[0].what;
 };
 
 /// A functor some of whose parameters do not fit one another, or the scene, says which: `static mpm_refusal
@@ -423,6 +431,30 @@ inline constexpr mpm_contact_step_limit contact_step_limit_table{
 template <MakesEnergy F>
 inline constexpr mpm_material_makes_energy makes_energy_table{MPM_MATERIAL_MAKES_ENERGY_VERSION, 0, F::makes_energy};
 
+template <Clamped F>
+inline constexpr std::uint32_t clamp_count = sizeof(F::clamps) / sizeof(mpm_clamp);
+template <class F, int D, bool Axisymmetric>
+void find_clamps_in(const double* bound, const mpm_clamp_batch& q) {
+  for (std::uint32_t lane = 0; lane < q.count; ++lane)
+    q.acting[lane] =
+        F::acting_clamps(bound, StateAccess<F, D, double, Axisymmetric>::load(q.state, q.temperature, q.stride, lane));
+}
+template <class F, int D>
+void find_clamps(const void* parameters, const mpm_clamp_batch* request) {
+  double bound[clamp_count<F>];
+  F::clamp_bounds(parameters_of<F>(parameters), bound);
+  if constexpr (D == 2 && AxisymmetricMaterialFunctor<F>)
+    if (request->axisymmetric) return find_clamps_in<F, D, true>(bound, *request);
+  find_clamps_in<F, D, false>(bound, *request);
+}
+template <Clamped F>
+inline constexpr mpm_material_clamps clamps_table{
+    MPM_MATERIAL_CLAMPS_VERSION,
+    clamp_count<F>,
+    F::clamps,
+    [](const void* parameters, double* bound) { F::clamp_bounds(parameters_of<F>(parameters), bound); },
+    {&find_clamps<F, 2>, &find_clamps<F, 3>}};
+
 template <TemperatureFunctor F>
 inline constexpr mpm_material_temperature temperature_table{MPM_MATERIAL_TEMPERATURE_VERSION, 0,
                                                             F::reference_temperature};
@@ -488,6 +520,8 @@ const void* material_extension(const char* id) {
     if (same_text(id, MPM_MATERIAL_PROJECTION_ID)) return &projection_table<F>;
   if constexpr (MakesEnergy<F>)
     if (same_text(id, MPM_MATERIAL_MAKES_ENERGY_ID)) return &makes_energy_table<F>;
+  if constexpr (Clamped<F>)
+    if (same_text(id, MPM_MATERIAL_CLAMPS_ID)) return &clamps_table<F>;
   if constexpr (TemperatureFunctor<F>)
     if (same_text(id, MPM_MATERIAL_TEMPERATURE_ID)) return &temperature_table<F>;
   if constexpr (CellSizeFunctor<F>)
