@@ -234,8 +234,47 @@ template <int D, class S> MPM_HD void run(const Task& t, int lane) {
 }
 )";
 
-/// Normals that look at particles run on the host alone: their text has to compile.
-constexpr const char* host_body = "template <int D, class S> MPM_HD void run(const Task&, int) {}\n";
+/// A normal that looks at particles is given sixteen of each body.
+constexpr const char* points_body = R"(
+template <int D, class S> struct Cloud {
+  S places[16 * D], weights[16];
+  MPM_HD Cloud(const Task& t, int body, int lane) {
+    load<16 * D>(t.in[body], lane, places);
+    load<16>(t.in[2 + body], lane, weights);
+  }
+  MPM_HD Vec<3, double> place(int k) const {
+    Vec<3, double> x{};
+    for (int c = 0; c < D; ++c) x[c] = places[k * D + c];
+    return x;
+  }
+  template <class Visit> MPM_HD void for_each(Visit visit) const {
+    for (int k = 0; k < 16; ++k) visit(place(k), double(weights[k]));
+  }
+  MPM_HD Vec<3, double> middle() const {
+    Vec<3, double> sum{};
+    for (int k = 0; k < 16; ++k)
+      for (int c = 0; c < 3; ++c) sum[c] += place(k)[c] / 16;
+    return sum;
+  }
+  MPM_HD Vec<3, double> farthest(const Vec<3, double>& along) const {
+    const auto at = [&](int k) { return along[0] * place(k)[0] + along[1] * place(k)[1] + along[2] * place(k)[2]; };
+    int best = 0;
+    for (int k = 1; k < 16; ++k)
+      if (at(k) > at(best)) best = k;
+    return place(best);
+  }
+};
+template <class Cloud> struct Points { Cloud a, b; };
+template <int D, class S> MPM_HD void run(const Task& t, int lane) {
+  double found[3] = {};
+  const Points<Cloud<D, S>> points{{t, 0, lane}, {t, 1, lane}};
+  const S any = Functor::template find<D>(*static_cast<const Functor::Parameters*>(t.parameters), points, found);
+  S normal[D];
+  for (int c = 0; c < D; ++c) normal[c] = static_cast<S>(found[c]);
+  store<D>(t.out[0], lane, normal);
+  store<1>(t.out[1], lane, &any);
+}
+)";
 
 /// A state with a temperature ends with it: the host brings it, and here it is that of reference.
 constexpr const char* material_body = R"(
@@ -310,7 +349,7 @@ std::string body_of(const Plugin& plugin) {
     case MPM_CONTACT:
       return contact_body;
     case MPM_NORMAL:
-      return by_points(plugin) ? host_body : normal_body;
+      return by_points(plugin) ? points_body : normal_body;
     case MPM_DETECTION:
       return detection_body;
     default:
@@ -384,6 +423,16 @@ Column corners(Random& random, int D) {
   return column;
 }
 
+/// Sixteen places on one side of the plane x = 0, [place][D], of as few digits as float has.
+Column beside_plane(Random& random, int D, double side) {
+  Column column = random_column(random, 16 * D, -1.4, 1.4);
+  for (int k = 0; k < 16; ++k)
+    for (int lane = 0; lane < particles; ++lane)
+      column[static_cast<std::size_t>(k * D) * particles + lane] = side * random.uniform(0.1, 1.4);
+  for (double& value : column) value = static_cast<float>(value);
+  return column;
+}
+
 Call inputs(const Plugin& plugin, int D, Random& random) {
   Call call;
   const int width = plugin.descriptor->kind == MPM_SHAPE ? static_cast<int>(plugin.shape().width) : 0;
@@ -429,7 +478,12 @@ Call inputs(const Plugin& plugin, int D, Random& random) {
       break;
     }
     case MPM_NORMAL:
-      if (by_points(plugin)) break;
+      if (by_points(plugin)) {
+        call.in = {beside_plane(random, D, -1), beside_plane(random, D, 1), random_column(random, 16, 0.1, 1),
+                   random_column(random, 16, 0.1, 1)};
+        call.out = {zeros(D), zeros(1)};
+        break;
+      }
       for (int k = 0; k < 4; ++k) call.in.push_back(random_column(random, D, k % 2 ? -2 : 0.5, k % 2 ? -0.5 : 2));
       call.out = {zeros(D), zeros(D), zeros(D), zeros(1)};
       break;
@@ -487,6 +541,27 @@ void run_material(const Plugin& plugin, int D, const ParameterSample& parameters
   batch.kirchhoff_stress = out[1].data(), batch.stored_energy = out[2].data();
   batch.dissipated_energy = out[3].data(), batch.wave_speed = out[4].data(), batch.volume_ratio = out[5].data();
   plugin.material().update[MPM_SCALAR_DOUBLE][D - 2](parameters.data(), &batch);
+}
+
+/// Finds normals of points through the C boundary, a call a particle's lane.
+void run_normal_by_points(const Plugin& plugin, int D, const ParameterSample& parameters, Call& call) {
+  const auto gathered = [&](const Column& column, int components, int lane) {
+    Column values(static_cast<std::size_t>(components) * 16);  // [component][place]
+    for (int k = 0; k < 16; ++k)
+      for (int c = 0; c < components; ++c)
+        values[static_cast<std::size_t>(c * 16 + k)] =
+            column[static_cast<std::size_t>(k * components + c) * particles + lane];
+    values.resize(components == 1 ? 16 : 48, 0.0);
+    return values;
+  };
+  for (int lane = 0; lane < particles; ++lane) {
+    const Column a = gathered(call.in[0], D, lane), b = gathered(call.in[1], D, lane),
+                 weight_a = gathered(call.in[2], 1, lane), weight_b = gathered(call.in[3], 1, lane);
+    double normal[3];
+    const mpm_normal_points points{16, 16, 16, 16, a.data(), b.data(), weight_a.data(), weight_b.data(), normal};
+    call.out[1][lane] = plugin.normal().from_points[D - 2](parameters.data(), &points);
+    for (int c = 0; c < D; ++c) call.out[0][static_cast<std::size_t>(c) * particles + lane] = normal[c];
+  }
 }
 
 /// Fills `call.out` through the C boundary, scalar double.
@@ -578,7 +653,7 @@ void run_plugin(const Plugin& plugin, int D, const ParameterSample& parameters, 
       break;
     }
     case MPM_NORMAL: {
-      if (by_points(plugin)) break;
+      if (by_points(plugin)) return run_normal_by_points(plugin, D, parameters, call);
       indices.resize(particles);
       const mpm_normal_batch batch{n,
                                    n,

@@ -7,6 +7,7 @@
 
 #include "normals/linear_regression/linear_regression.hpp"
 #include "normals/logistic_regression/logistic_regression.hpp"
+#include "plugin/sdk/points.hpp"
 #include "support/catch.hpp"
 
 namespace {
@@ -32,7 +33,7 @@ template <class Regression, int D>
 bool regression(double penalty, const Cloud& a, const Cloud& b, double* normal) {
   const mpm_normal_points points{a.count,           a.count,         b.count,         b.count, a.position.data(),
                                  b.position.data(), a.weight.data(), b.weight.data(), normal};
-  return Regression::template find<D>({penalty}, points, normal);
+  return Regression::template find<D>({penalty}, sdk::clouds_of(points), normal);
 }
 
 /// The unit slope that minimizes sum w (c - b - s . x)^2 + penalty s^2.

@@ -746,8 +746,8 @@ struct ShortOwnNormals : OwnGradient {
 };
 
 struct TiltedGap : WidestGap {
-  template <int D>
-  static bool find(const Parameters& p, const mpm_normal_points& points, double* normal) {
+  template <int D, class Points>
+  MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     if (!WidestGap::find<D>(p, points, normal)) return false;
     const double x = normal[0];
     normal[0] = std::cos(0.01) * x - std::sin(0.01) * normal[1];
@@ -757,8 +757,8 @@ struct TiltedGap : WidestGap {
 };
 
 struct BackwardsGap : WidestGap {
-  template <int D>
-  static bool find(const Parameters& p, const mpm_normal_points& points, double* normal) {
+  template <int D, class Points>
+  MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     const bool found = WidestGap::find<D>(p, points, normal);
     for (int c = 0; c < D; ++c) normal[c] = -normal[c];
     return found;
@@ -766,8 +766,8 @@ struct BackwardsGap : WidestGap {
 };
 
 struct NoGap : WidestGap {
-  template <int D>
-  static bool find(const Parameters&, const mpm_normal_points&, double*) {
+  template <int D, class Points>
+  MPM_HD static bool find(const Parameters&, const Points&, double*) {
     return false;
   }
 };

@@ -9,6 +9,7 @@
 
 #include "normals/given/given.hpp"
 #include "normals/widest_gap/widest_gap.hpp"
+#include "plugin/sdk/points.hpp"
 #include "support/catch.hpp"
 
 using namespace mpm;
@@ -63,8 +64,8 @@ struct Clouds {
                                    nullptr,
                                    nullptr};
     Plane found;
-    found.found = dimension == 2 ? WidestGap::find<2>({}, points, found.normal.data())
-                                 : WidestGap::find<3>({}, points, found.normal.data());
+    found.found = dimension == 2 ? WidestGap::find<2>({}, sdk::clouds_of(points), found.normal.data())
+                                 : WidestGap::find<3>({}, sdk::clouds_of(points), found.normal.data());
     found.gap = gap(found.normal);
     return found;
   }
@@ -186,7 +187,7 @@ TEST_CASE("of places equally far along a direction the first counts, in whicheve
     std::vector<Vector3> places(16, {0, 0, 0});
     places[3] = {1, -1, 0}, places[static_cast<std::size_t>(other)] = {1, 1, 0};
     const Row row(places);
-    const WidestGap::Cloud cloud{row.places.data(), 16, row.stride};
+    const sdk::CloudInLanes cloud{row.places.data(), nullptr, 16, row.stride};
     CHECK(cloud.farthest({1, 0, 0})[1] == -1);
   }
 }

@@ -5,9 +5,6 @@
 #include "kernel/direction.hpp"
 #include "kernel/linear_system.hpp"
 #if MPM_HOST
-#include <cstddef>
-#include <cstdint>
-
 #include "plugin/tables.hpp"
 #endif
 
@@ -18,7 +15,6 @@ struct LogisticRegression {
     double penalty;  ///< cells^2, beside the weights of the particles
   };
 
-#if MPM_HOST
   /// A plane: slope along the axes, 1/cell, then the offset.
   template <int D>
   using Plane = Vec<D + 1, double>;
@@ -30,27 +26,26 @@ struct LogisticRegression {
 
   /// Adds one body's particles: w (c - f)^2 with f = 2 / (1 + exp(-z)) - 1, z = b + s . x. The matrix is half the second
   /// derivative where `curved`; else, as Gauss does, without the curvature f'' = -f f'.
-  template <int D>
-  static void add(const double* position, const double* weight, std::uint32_t count, std::uint32_t stride, double label,
-                  const Plane<D>& plane, bool curved, Sums<D>& sums) {
-    for (std::uint32_t k = 0; k < count; ++k) {
+  template <int D, class Cloud>
+  MPM_HD static void add(const Cloud& cloud, double label, const Plane<D>& plane, bool curved, Sums<D>& sums) {
+    cloud.for_each([&](const Vec<3, double>& place, double weight) {
       double row[D + 1], z = plane[D];
-      for (int i = 0; i < D; ++i) row[i] = position[static_cast<std::size_t>(i) * stride + k], z += plane[i] * row[i];
+      for (int i = 0; i < D; ++i) row[i] = place[i], z += plane[i] * row[i];
       row[D] = 1;
       const double f = 2 / (1 + exp(-z)) - 1, slope = 0.5 * (1 - f * f), error = label - f;
       const double second = slope * slope + (curved ? error * f * slope : 0);
-      sums.cost += weight[k] * error * error;
+      sums.cost += weight * error * error;
       for (int i = 0; i <= D; ++i) {
-        sums.rhs[i] += weight[k] * error * slope * row[i];
-        for (int j = 0; j <= D; ++j) sums.m[i][j] += weight[k] * second * row[i] * row[j];
+        sums.rhs[i] += weight * error * slope * row[i];
+        for (int j = 0; j <= D; ++j) sums.m[i][j] += weight * second * row[i] * row[j];
       }
-    }
+    });
   }
-  template <int D>
-  static Sums<D> sums_of(const Parameters& p, const mpm_normal_points& points, const Plane<D>& plane, bool curved) {
+  template <int D, class Points>
+  MPM_HD static Sums<D> sums_of(const Parameters& p, const Points& points, const Plane<D>& plane, bool curved) {
     Sums<D> sums;
-    add<D>(points.position_a, points.weight_a, points.count_a, points.stride_a, -1, plane, curved, sums);
-    add<D>(points.position_b, points.weight_b, points.count_b, points.stride_b, 1, plane, curved, sums);
+    add<D>(points.a, -1, plane, curved, sums);
+    add<D>(points.b, 1, plane, curved, sums);
     for (int i = 0; i < D; ++i) {
       sums.cost += p.penalty * plane[i] * plane[i];
       sums.rhs[i] -= p.penalty * plane[i], sums.m[i][i] += p.penalty;
@@ -59,12 +54,12 @@ struct LogisticRegression {
   }
 
   template <int D>
-  static Plane<D> moved(Plane<D> plane, const double (&by)[D + 1]) {
+  MPM_HD static Plane<D> moved(Plane<D> plane, const double (&by)[D + 1]) {
     for (int i = 0; i <= D; ++i) plane[i] += by[i];
     return plane;
   }
   template <int D>
-  static Vec<D, double> slope_of(const Plane<D>& plane) {
+  MPM_HD static Vec<D, double> slope_of(const Plane<D>& plane) {
     Vec<D, double> slope;
     for (int i = 0; i < D; ++i) slope[i] = plane[i];
     return slope;
@@ -72,8 +67,8 @@ struct LogisticRegression {
 
   /// Steps of Gauss and Newton, damped as Levenberg does, until the normal hardly turns. The first, from the plane z = 0,
   /// where f has the slope 1/2, is linear regression.
-  template <int D>
-  static Plane<D> fitted(const Parameters& p, const mpm_normal_points& points) {
+  template <int D, class Points>
+  MPM_HD static Plane<D> fitted(const Parameters& p, const Points& points) {
     constexpr int most_rounds = 200;
     constexpr double little = 1e-5, first_damping = 1e-12, most_damping = 1e12;
     Plane<D> plane{};
@@ -103,8 +98,8 @@ struct LogisticRegression {
   }
 
   /// The plane that is fitted, and a few steps of Newton's own, which leave nothing of how it was come to.
-  template <int D>
-  static bool find(const Parameters& p, const mpm_normal_points& points, double* normal) {
+  template <int D, class Points>
+  MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     constexpr int steps = 4;
     constexpr double rounding = 1e-12;
     Plane<D> plane = fitted<D>(p, points);
@@ -123,6 +118,7 @@ struct LogisticRegression {
     return true;
   }
 
+#if MPM_HOST
   static constexpr unsigned traits = MPM_LOOKS_AT_POINTS;
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(penalty, "", 1e-6, 1e-12, 1.0, 0,

@@ -6,9 +6,6 @@
 #include "kernel/linear_system.hpp"
 #include "kernel/tensor.hpp"
 #if MPM_HOST
-#include <cstddef>
-#include <cstdint>
-
 #include "plugin/tables.hpp"
 #endif
 
@@ -17,52 +14,11 @@ namespace mpm {
 struct WidestGap {
   struct Parameters {};
 
-#if MPM_HOST
   using Place = Vec<3, double>;
 
-  static double dot(const Place& u, const Place& v) {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-  }
-  static Place difference(const Place& u, const Place& v) {
-    return {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
-  }
-  static bool same(const Place& u, const Place& v) {
-    return u[0] == v[0] && u[1] == v[1] && u[2] == v[2];
-  }
-
-  /// The particles of one body side by side, in cells, so that all are looked at in lanes.
-  struct Cloud {
-    const double* values;
-    std::uint32_t count, stride;
-
-    Place operator[](std::uint32_t i) const { return {values[i], values[stride + i], values[2 * stride + i]}; }
-    /// Where they are about: a first guess alone depends on it.
-    Place middle() const {
-      Place sum{};
-      for (int c = 0; c < 3; ++c) {
-        for (std::uint32_t i = 0; i < count; ++i) sum[c] += values[static_cast<std::size_t>(c) * stride + i];
-        sum[c] /= count;
-      }
-      return sum;
-    }
-    /// The place farthest along a direction, the first of several.
-    Place farthest(const Place& along) const {
-      constexpr std::uint32_t lanes = 8;
-      double most[lanes], at[lanes];
-      for (std::uint32_t k = 0; k < lanes; ++k) most[k] = -unbounded, at[k] = 0;
-      const double *const x = values, *const y = x + stride, *const z = y + stride;
-      for (std::uint32_t i = 0; i < stride; i += lanes)
-        for (std::uint32_t k = 0; k < lanes; ++k) {
-          const double place = along[0] * x[i + k] + along[1] * y[i + k] + along[2] * z[i + k];
-          const bool farther = place > most[k];
-          most[k] = farther ? place : most[k], at[k] = farther ? static_cast<double>(i + k) : at[k];
-        }
-      std::uint32_t best = 0;
-      for (std::uint32_t k = 1; k < lanes; ++k)
-        if (most[k] > most[best] || (most[k] == most[best] && at[k] < at[best])) best = k;
-      return (*this)[static_cast<std::uint32_t>(at[best])];
-    }
-  };
+  MPM_HD static double dot(const Place& u, const Place& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
+  MPM_HD static Place difference(const Place& u, const Place& v) { return {u[0] - v[0], u[1] - v[1], u[2] - v[2]}; }
+  MPM_HD static bool same(const Place& u, const Place& v) { return u[0] == v[0] && u[1] == v[1] && u[2] == v[2]; }
 
   static constexpr int most_corners = 4;  // of a simplex in three dimensions
 
@@ -71,8 +27,8 @@ struct WidestGap {
     Place corners[most_corners] = {};
     int size = 0;
 
-    void add(const Place& corner) { corners[size++] = corner; }
-    bool has(const Place& corner) const {
+    MPM_HD void add(const Place& corner) { corners[size++] = corner; }
+    MPM_HD bool has(const Place& corner) const {
       for (int i = 0; i < size; ++i)
         if (same(corners[i], corner)) return true;
       return false;
@@ -86,7 +42,7 @@ struct WidestGap {
     bool found = false;
   };
   template <int N>
-  static Nearest nearest_of(const Place* corners) {
+  MPM_HD static Nearest nearest_of(const Place* corners) {
     Nearest nearest{corners[0], 0, false};
     if constexpr (N > 1) {
       Place edges[N - 1];
@@ -108,38 +64,36 @@ struct WidestGap {
     nearest.found = true;
     return nearest;
   }
-  static Nearest nearest_of(const Simplex& simplex) {
+  MPM_HD static Nearest nearest_of(const Simplex& simplex) {
     if (simplex.size == 1) return nearest_of<1>(simplex.corners);
     if (simplex.size == 2) return nearest_of<2>(simplex.corners);
     return simplex.size == 3 ? nearest_of<3>(simplex.corners) : nearest_of<4>(simplex.corners);
   }
 
   /// The point of a simplex nearest to the origin; the simplex keeps the corners that it lies between.
-  static Nearest reduce(Simplex& simplex) {
-    Nearest best{{}, unbounded, false};
+  MPM_HD static Nearest reduce(Simplex& simplex) {
+    Nearest best;
     Simplex kept;
     for (int chosen = 1; chosen < 1 << simplex.size; ++chosen) {
       Simplex some;
       for (int i = 0; i < simplex.size; ++i)
         if (chosen >> i & 1) some.add(simplex.corners[i]);
       const Nearest nearest = nearest_of(some);
-      if (nearest.found && nearest.squared < best.squared) best = nearest, kept = some;
+      if (nearest.found && (!best.found || nearest.squared < best.squared)) best = nearest, kept = some;
     }
     simplex = kept;
     return best;
   }
 
-  template <int D>
-  static bool find(const Parameters&, const mpm_normal_points& points, double* normal) {
+  template <int D, class Points>
+  MPM_HD static bool find(const Parameters&, const Points& points, double* normal) {
     constexpr int most_rounds = 100;
     constexpr double rounding = 1e-12;  // of the squared distance
-    const Cloud a{points.position_a, points.count_a, points.stride_a},
-        b{points.position_b, points.count_b, points.stride_b};
     const auto farthest_apart = [&](const Place& along) {
-      return difference(b.farthest(difference({}, along)), a.farthest(along));
+      return difference(points.b.farthest(difference({}, along)), points.a.farthest(along));
     };
     Simplex simplex;
-    simplex.add(farthest_apart(difference(b.middle(), a.middle())));
+    simplex.add(farthest_apart(difference(points.b.middle(), points.a.middle())));
     Nearest nearest{simplex.corners[0], dot(simplex.corners[0], simplex.corners[0]), true};
     double scale = nearest.squared;
     for (int round = 0; round < most_rounds; ++round) {
@@ -158,6 +112,7 @@ struct WidestGap {
     return true;
   }
 
+#if MPM_HOST
   static constexpr unsigned traits = MPM_LOOKS_AT_POINTS;
 #endif
 };

@@ -11,6 +11,7 @@
 #include "kernel/lanes.hpp"
 #include "kernel/tensor.hpp"
 #include "plugin/extensions.h"
+#include "plugin/sdk/points.hpp"
 #include "plugin/tables.hpp"
 
 namespace mpm::sdk {
@@ -138,9 +139,9 @@ concept SumsNormalFunctorIn = requires(const typename F::Parameters& p, const No
 };
 template <class F>
 concept SumsNormalFunctor = SumsNormalFunctorIn<F, 2> && SumsNormalFunctorIn<F, 3>;
-/// A normal that looks at the particles near a node. Returns whether there is one.
+/// A normal that looks at the particles near a node, in clouds of any kind (kernel/points.hpp). Returns whether there is one.
 template <class F, int D>
-concept PointsNormalFunctorIn = requires(const typename F::Parameters& p, const mpm_normal_points& points,
+concept PointsNormalFunctorIn = requires(const typename F::Parameters& p, const PointsOfPair<CloudInLanes>& points,
                                          double* normal) {
   { F::traits } -> std::convertible_to<unsigned>;
   { F::template find<D>(p, points, normal) } -> std::same_as<bool>;
@@ -596,7 +597,7 @@ void normal_batch(const void* parameters, const mpm_normal_batch* request) {
 template <class F, int D>
 std::int32_t normal_of_points(const void* parameters, const mpm_normal_points* points) {
   for (int c = 0; c < 3; ++c) points->normal[c] = 0;
-  return F::template find<D>(parameters_of<F>(parameters), *points, points->normal);
+  return F::template find<D>(parameters_of<F>(parameters), clouds_of(*points), points->normal);
 }
 
 template <class F, class S>

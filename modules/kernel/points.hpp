@@ -1,0 +1,20 @@
+#pragma once
+// The particles near a node, as normals of contact look at them: a functor is written for any kind of cloud, as hosts keep
+// particles in rows and devices in columns that lanes share. Device-safe.
+
+#include "kernel/tensor.hpp"
+
+namespace mpm {
+
+/// The particles of two bodies that a node sees. A cloud holds those of one body, at least one, and has
+///   for_each(visit)  calls visit(place, weight) for all of them, each time in the same order,
+///   middle()         where they are about: a first guess alone depends on it,
+///   farthest(along)  the place farthest along a direction, the first of several.
+/// A place is a Vec<3, double>, in cells from the node; z is 0 in the plane. A weight is the quadratic B-spline's of the node at
+/// the particle, 0 from 1.5 cells along an axis on.
+template <class Cloud>
+struct PointsOfPair {
+  Cloud a, b;
+};
+
+}  // namespace mpm
