@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operators/contact_points.hpp"
 #include "simulation/boundary.hpp"
 #include "simulation/contact_impulse.hpp"
 
 namespace mpm {
 namespace {
 
-constexpr double least_reach = 1.5;  // cells: two rows of particles and more of each body, also with tents
-constexpr int cube_side = 4;         // cells
+constexpr int cube_side = 4;  // cells
 constexpr std::uint32_t nobody = ~0u;
 
 /// A number for three coordinates; those of a domain's nodes differ in the lowest 21 bits.
@@ -23,13 +23,6 @@ std::uint64_t key_of(const std::array<int, 3>& at) {
 /// A weld joins fields wherever they meet and looks at no surface.
 bool looks(const Experiment& experiment) {
   return experiment.contact && !(experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION);
-}
-
-/// The weight of the quadratic B-spline along an axis, `x` in cells from its node.
-double quadratic_weight(double x) {
-  const double distance = std::abs(x);
-  if (distance >= 1.5) return 0;
-  return distance < 0.5 ? 0.75 - distance * distance : 0.5 * (1.5 - distance) * (1.5 - distance);
 }
 
 int cube_of(double x) {
@@ -132,8 +125,8 @@ void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides
   std::array<int, 3> low{}, high{};
   for (int axis = 0; axis < dimension_; ++axis) {
     const double reach = reach_of(semi_sides, axis);
-    low[axis] = std::max(window_.low[axis], static_cast<int>(std::floor(x[axis] - reach)) + 1);
-    high[axis] = std::min(window_.high[axis], static_cast<int>(std::ceil(x[axis] + reach)) - 1);
+    low[axis] = std::max(window_.low[axis], first_that_sees(x[axis], reach));
+    high[axis] = std::min(window_.high[axis], last_that_sees(x[axis], reach));
   }
   bool seen = false;
   if (!window_.nodes.empty())
@@ -189,8 +182,8 @@ void ContactPoints::add_image(int field, const Vector3& x, const SemiSides& semi
   std::array<int, 3> low{}, high{};
   for (int axis = 0; axis < dimension_; ++axis) {
     const double reach = reach_of(semi_sides, axis);
-    low[axis] = static_cast<int>(std::floor(x[axis] - reach)) + 1;
-    high[axis] = static_cast<int>(std::ceil(x[axis] + reach)) - 1;
+    low[axis] = first_that_sees(x[axis], reach);
+    high[axis] = last_that_sees(x[axis], reach);
   }
   bool kept = false;
   const auto number = static_cast<std::uint32_t>(places_.size());
@@ -254,17 +247,8 @@ SeparatedPair ContactPoints::separate(const Node& node, int a, int b) const {
   return pair;
 }
 
-/// Half of what a particle, an ellipsoid with these semi-sides as conjugate radii, extends along a unit normal, cells.
 double ContactPoints::extent(std::uint32_t particle, const Vector3& normal) const {
-  const SemiSides& sides = semi_sides_[particle];
-  double squared = 0;
-  for (int k = 0; k < dimension_; ++k) {
-    double along = 0;
-    for (int i = 0; i < dimension_; ++i)
-      along += normal[i] * sides[3 * static_cast<std::size_t>(i) + static_cast<std::size_t>(k)];
-    squared += along * along;
-  }
-  return std::sqrt(squared);
+  return extent_along(semi_sides_[particle].data(), normal.data(), dimension_);
 }
 
 SurfacePlaces ContactPoints::surfaces(const std::array<int, 3>& at, int a, int b, const Vector3& normal) const {

@@ -46,6 +46,8 @@ class ContactPoints {
   bool needed() const { return gives_normal_ || sees_surfaces_; }
   bool gives_normal() const { return gives_normal_; }
   bool sees_surfaces() const { return sees_surfaces_; }
+  /// How far from a node its particles lie at most along an axis, cells; with lists that is beside their domains.
+  double reach() const { return reach_; }
 
   /// Forgets the nodes and particles of the last step.
   void begin();

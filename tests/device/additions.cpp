@@ -71,7 +71,7 @@ TEST_CASE("all that a scene may hold beside plugins does on the host-run device 
         check(own);
       }
       if (mix.contact.find("widest_gap") == mix.contact.npos) continue;
-      // A law that keeps a state, and asks for the area that the host has found by looking at particles.
+      // A law that keeps a state, and asks for the area that nodes have found by looking at particles.
       mix.contact = R"({"type": "breakable_glue", "tension_stiffness": 1e4, "compression_stiffness": 5e4,
         "shear_stiffness": 2e4, "normal_strength": 60, "shear_strength": 90, "friction": 0.2, "normal": "widest_gap",
         "detection": "particle_surfaces"})";

@@ -116,13 +116,26 @@ TEST_CASE("formulas of loads and of grips are evaluated without the host, in gra
   }
 }
 
-TEST_CASE("the host waits within a step where contact looks at particles", "[device][graphs]") {
-  for (const std::string& setting :
-       {set("/contact/normal", "\"widest_gap\""), set("/contact/detection", "\"particle_surfaces\"")}) {
-    INFO(setting);
-    const Run found = run(touching().text(), true, {setting});
-    CHECK(found.synchronisations >= 2 * found.steps);
-  }
+TEST_CASE("nodes look at particles without the host, in graphs too", "[device][graphs]") {
+  const std::string gap = set("/contact/normal", "\"widest_gap\""),
+                    surfaces = set("/contact/detection", "\"particle_surfaces\"");
+  const std::vector<std::vector<std::string>> asked{
+      {gap},
+      {surfaces},
+      {gap, surfaces},
+      {set("/contact/normal", "\"logistic_regression\""), surfaces, set("/shape/type", "\"cpdi\"")}};
+  for (const std::vector<std::string>& settings : asked)
+    for (const int dimension : {2, 3}) {
+      if (dimension == 3 && settings.size() != 2) continue;
+      INFO(dimension << "-D " << settings.front());
+      Mix mix = touching();
+      mix.dimension = dimension;
+      const Run plain = run(mix.text(), false, settings), found = run(mix.text(), true, settings);
+      check_same(plain, found);
+      for (const Run* any : {&plain, &found}) CHECK(any->synchronisations == any->steps);
+      CHECK(found.graph_launches >= found.steps - 3);
+      CHECK(found.contact_force != std::array<double, 3>{});
+    }
 }
 
 TEST_CASE("glue, whose law keeps a state, runs by graphs", "[device][graphs]") {
@@ -137,7 +150,7 @@ TEST_CASE("glue, whose law keeps a state, runs by graphs", "[device][graphs]") {
 TEST_CASE("steps that ask the host for something are no graphs", "[device][graphs]") {
   for (const std::string& setting :
        {set("/grid/boundaries/y_min", R"({"type": "prescribed", "velocity": ["0.1*t", 0]})"),
-        set("/gravity", R"(["0.1*t", 0])"), set("/contact/normal", "\"widest_gap\"")}) {
+        set("/gravity", R"(["0.1*t", 0])")}) {
     INFO(setting);
     const Run plain = run(touching().text(), false, {setting}), found = run(touching().text(), true, {setting});
     check_same(plain, found);

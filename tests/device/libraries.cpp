@@ -371,6 +371,28 @@ TEST_CASE("a plan without a compiler has the memory and says what is missing", "
   CHECK(json["bodies"][1] == nlohmann::ordered_json{{"name", "ball"}, {"bytes_per_particle", 16}});
   CHECK(json["memory"][3]["body"].is_null());
   CHECK(json["kernel_count"] == 2);
+  CHECK_FALSE(json.contains("looks_at_particles"));
+}
+
+TEST_CASE("the plan of a device says who asks nodes to look at particles", "[device][libraries]") {
+  Mix mix;
+  const auto who = [&](const std::string& contact) {
+    mix.contact = contact;
+    return device::who_looks_at_particles(device_experiment(mix.text(), "double"));
+  };
+  CHECK(who(R"({"type": "coulomb"})").empty());
+  CHECK(who(R"({"type": "stick"})").empty());
+  const std::string normal = "/contact/normal \"widest_gap\"", detection = "/contact/detection \"particle_surfaces\"";
+  CHECK(who(R"({"type": "coulomb", "normal": "widest_gap"})") == normal);
+  CHECK(who(R"({"type": "coulomb", "detection": "particle_surfaces"})") == detection);
+  device::DevicePlan plan;
+  plan.looks = who(R"({"type": "coulomb", "normal": "widest_gap", "detection": "particle_surfaces"})");
+  CHECK(plan.looks == normal + ", " + detection);
+  plan.missing = "there is none";
+  CHECK_THAT(plan.to_text(), ContainsSubstring("\n  " + plan.looks +
+                                               ": nodes where fields meet look at particles, once a step "
+                                               "(find_meeting_nodes, look_at_particles)\n"));
+  CHECK(plan.to_json()["looks_at_particles"] == plan.looks);
 }
 
 TEST_CASE("CUDA_PATH is looked at before CUDA_HOME, and both before the usual folder", "[device][libraries]") {

@@ -5,6 +5,7 @@
 #include <regex>
 #include <set>
 
+#include "backends/device/contact_sight.hpp"
 #include "backends/device/sorting.hpp"
 #include "device/device_support.hpp"
 #include "device/scene_size.hpp"
@@ -59,9 +60,14 @@ std::map<std::string, double> asked_by_name(const Experiment& experiment) {
 
 /// The bytes that are counted before the run, by the same names.
 std::map<std::string, double> counted_by_name(const Experiment& experiment, const device::SceneSize& size) {
-  static const std::map<std::string, std::string> apart{
-      {"contact", "contact"},       {"welds", "welds"}, {"contact nodes", "contact nodes"},
-      {"exact sums", "exact sums"}, {"sums", "sums"},   {"formula numbers", "the numbers of formulas"}};
+  static const std::map<std::string, std::string> apart{{"contact", "contact"},
+                                                        {"welds", "welds"},
+                                                        {"contact nodes", "contact nodes"},
+                                                        {"exact sums", "exact sums"},
+                                                        {"sums", "sums"},
+                                                        {"formula numbers", "the numbers of formulas"},
+                                                        {"nodes that meet", "nodes that meet"},
+                                                        {"rows of particles", "rows of particles"}};
   std::map<std::string, double> counted;
   for (const device::TakenMemory& taken : device::taken_memory(experiment, make_plan(experiment), size)) {
     const bool of_blocks = taken.field == "blocks" || taken.field == "tables of blocks";
@@ -113,11 +119,11 @@ TEST_CASE("every array of a device is counted before a run begins as the driver 
     device::SceneSize size = scene_size(experiment, simulation.backend());
     size.load_shares = {1, 0, 0};  // one particle is nearest to the point
     const std::map<std::string, double> counted = counted_by_name(experiment, size);
-    CHECK(counted.size() == 14);
+    CHECK(counted.size() == 16);
     std::set<std::string> fixed;  // tables of a fixed length, and the nodes near rigid bodies
     for (const auto& [name, bytes] : asked)
       if (!counted.count(name)) fixed.insert(name);
-    CHECK(fixed == std::set<std::string>{"rigid bodies", "the edges of bodies", "the loads",
+    CHECK(fixed == std::set<std::string>{"rigid bodies", "the bodies that meet", "the edges of bodies", "the loads",
                                          "the parameters of a material", "the parameters of contact"});
     for (auto [name, bytes] : counted) {
       INFO(name << ", " << precision);
@@ -148,6 +154,7 @@ TEST_CASE("what a particle and a node take on a device is as a hand counts it", 
                              {"momentum", 2, 3 * 16, true},
                              {"folded", 1, 3 * 4, true},
                              {"contact", 4, 3 * (4 * 8 + 4), true},
+                             {"nodes that meet", 1, 4, true},
                              {"welds", 3, 3 * 3 * 8, true},
                              {"contact nodes", 6, 3 * (6 * 8 + 4), true},
                              {"exact sums", 18, 18 * 8, true},
@@ -162,6 +169,21 @@ TEST_CASE("what a particle and a node take on a device is as a hand counts it", 
   CHECK(named(taken, "active").bytes == 3 * 2);
   CHECK(named(device::taken_memory(experiment, plan, {{1, 1, 1}, 33, 1, 1}), "active").bytes == 3 * 3);
   CHECK(named(taken, "sums").bytes == (16 * 33 + 1 + 8192 + 24) * 8);
+
+  // A row has room for half as many particles again as 3 x 3 cells hold, and its lane looks for one node in 16.
+  CHECK(named(taken, "rows of particles").bytes == 3 * 54 * 2 * 8);
+  const auto large = device::taken_memory(experiment, plan, {{1, 1, 1}, 1000000, 1, 128});
+  CHECK(named(large, "rows of particles").bytes == 16384 * 54 * 2 * 8);
+  // Rows of 12^3 cells' particles would take more than 256 MiB.
+  Mix fine;
+  fine.dimension = 3, fine.contact = R"({"type": "coulomb", "normal": "widest_gap"})";
+  fine.overrides = {set("/bodies/1/particles_per_cell_axis", "4")};
+  const device::SightRoom many(device_experiment(fine.text(), "double", fine.overrides), 10000000, 128);
+  CHECK(many.row_length == 2592);
+  CHECK(many.lanes() == 34 * 128);
+  Mix by_sums = fine;
+  by_sums.contact = R"({"type": "coulomb"})";
+  CHECK(device::SightRoom(device_experiment(by_sums.text(), "double"), 10000000, 128).numbers() == 0);
 
   // Without contact a scatter has 5 channels, but that of heat up to 6: heat, its capacity and place, and what walls let in.
   Mix warm;

@@ -20,7 +20,9 @@ TEST_CASE("particles come, go and change their material on the host-run device",
 }
 
 TEST_CASE("a body without particles runs on the host-run device", "[device]") {
-  for (const std::string contact : {"", R"({"type": "coulomb", "friction": 0.2})"}) {
+  for (const std::string contact :
+       {"", R"({"type": "coulomb", "friction": 0.2})",
+        R"({"type": "coulomb", "normal": "widest_gap", "detection": "particle_surfaces"})"}) {
     Mix mix;
     mix.contact = contact;
     mix.overrides = {

@@ -207,6 +207,10 @@ bool has_loads(const Choice& choice) {
   return choice.loads_at_points;
 }
 
+bool is_list(const Choice& choice) {
+  return choice.shape->shape().form == MPM_NODE_LIST;
+}
+
 /// Whether the filter ever projects.
 bool has_filter_loop(const Choice& choice) {
   return number_of(choice.node_fields, "projection") >= 0;
@@ -232,6 +236,8 @@ std::vector<EntryGroup> entry_groups(const Choice& choice) {
                                  {"MPM_DEVICE_LOAD_ENTRIES", has_loads(choice)},
                                  {"MPM_DEVICE_LEDGER_ENTRIES", ledger},
                                  {"MPM_DEVICE_CONTACT_ENTRIES", choice.contact != nullptr},
+                                 {"MPM_DEVICE_CONTACT_POINTS_ENTRIES", choice.contact_by_particles},
+                                 {"MPM_DEVICE_CONTACT_REACH_ENTRIES", choice.contact_by_particles && is_list(choice)},
                                  {"MPM_DEVICE_CONTACT_STATE_ENTRIES", contact_states(choice) > 0},
                                  {"MPM_DEVICE_TRACTION_ENTRIES", reads_traction(choice)},
                                  {"MPM_DEVICE_REACTION_ENTRIES", choice.reactions},
@@ -255,7 +261,7 @@ std::vector<EntryGroup> entry_groups(const Choice& choice) {
 std::string scene_text(const Choice& choice) {
   const mpm_shape& shape = choice.shape->shape();
   const unsigned traits = choice.transfer->transfer().traits;
-  const bool list = shape.form == MPM_NODE_LIST;
+  const bool list = is_list(choice);
   const auto type = [](const Plugin* plugin) { return "::mpm::" + std::string(plugin->descriptor->functor_name); };
   const bool affine = traits & (MPM_GATHERS_AFFINE | MPM_STRESS_BY_AFFINE | MPM_STRAIN_BY_AFFINE);
   std::ostringstream out;
@@ -269,11 +275,14 @@ std::string scene_text(const Choice& choice) {
   if (choice.contact) out << "  using Contact = " << type(choice.contact) << ";\n";
   if (choice.normal) out << "  using Normal = " << type(choice.normal) << ";\n";
   if (choice.detection) out << "  using Detection = " << type(choice.detection) << ";\n";
-  const unsigned detects = choice.detection ? choice.detection->detection().traits : 0;
-  const bool own = choice.normal && (choice.normal->normal().traits & MPM_OWN_NORMALS);
+  const unsigned detects = choice.detection ? choice.detection->detection().traits : 0,
+                 normals = choice.normal ? choice.normal->normal().traits : 0;
   const bool weld = choice.contact && (choice.contact->contact().traits & MPM_BYPASSES_DETECTION);
   out << "  static constexpr bool contact = " << yes(choice.contact) << ", bypasses_detection = " << yes(weld)
-      << ", contact_by_particles = " << yes(choice.contact_by_particles) << ", own_normals = " << yes(own)
+      << ", contact_by_particles = " << yes(choice.contact_by_particles)
+      << ", normal_by_particles = " << yes(normals & MPM_LOOKS_AT_POINTS)
+      << ", own_normals = " << yes(normals & MPM_OWN_NORMALS)
+      << ", reads_surfaces = " << yes(detects & MPM_READS_PARTICLE_SURFACES)
       << ", reads_means = " << yes(detects & MPM_READS_MEAN_POSITION)
       << ", reads_edges = " << yes(detects & MPM_READS_EDGES) << ", notes_contact = " << yes(choice.notes_contact)
       << ", reads_traction = " << yes(reads_traction(choice)) << ", grips = " << yes(has_grips(choice))
@@ -393,7 +402,7 @@ Choice choice_of(const Experiment& experiment, const Plan& plan) {
   choice.particle_fields = particle_fields(experiment, plan, 0);
   if (experiment.filter) choice.filter = experiment.filter->plugin;
   if (experiment.contact) choice.contact = experiment.contact->plugin;
-  if (experiment.contact && !choice.contact_by_particles) choice.normal = experiment.contact_normal->plugin;
+  if (experiment.contact) choice.normal = experiment.contact_normal->plugin;
   if (choice.normal && !(choice.contact->contact().traits & MPM_BYPASSES_DETECTION))
     choice.detection = experiment.contact_detection->plugin;
   choice.rigid_laws = laws_of_rigid_bodies(experiment);
@@ -418,6 +427,7 @@ const char* embedded_header(std::string_view path) {
 Composition compose(const Choice& choice) {
   Text text;
   text.add_header("backends/device/kernels/kernels.hpp", "the composer");
+  if (choice.contact_by_particles) text.add_header("backends/device/kernels/contact_points.hpp", "the composer");
   for (const Plugin* plugin :
        {choice.shape, choice.transfer, choice.filter, choice.contact, choice.normal, choice.detection})
     if (plugin) text.add_functor(*plugin);

@@ -21,11 +21,11 @@ struct Choice {
   const Plugin* transfer = nullptr;
   const Plugin* filter = nullptr;
   const Plugin* contact = nullptr;
-  const Plugin *normal = nullptr, *detection = nullptr;  ///< with contact whose geometry follows from sums over nodes
+  const Plugin *normal = nullptr, *detection = nullptr;  ///< with contact; no detection where the law bypasses it
   std::vector<const Plugin*> materials;
   std::vector<const Plugin*> rigid_laws;            ///< of rigid bodies, each once (number_of_law)
   bool deterministic = false;                       ///< scatters sum to the same bits in any order of lanes
-  bool contact_by_particles = false;                ///< the host finds how fields meet (contact_pairs.hpp)
+  bool contact_by_particles = false;                ///< nodes look at particles (kernels/contact_points.hpp)
   bool notes_contact = false;                       ///< what contact does at single nodes is written down
   bool loads_at_points = false;                     ///< particles carry loads that act beside them
   bool reactions = false;                           ///< what supports give is summed

@@ -19,7 +19,7 @@ Arguments<T> DeviceBackend<T>::pair_arguments(std::size_t a, std::size_t b, Stag
   arguments.rigid.mass = std::numeric_limits<double>::infinity();  // as laws see what a grip holds
   arguments.edges[0] = edges_.of(a), arguments.edges[1] = edges_.of(b);
   arguments.after_forces = stage == Stage::after_forces;
-  if (contact_pairs_) arguments.found = contact_pairs_->of(first, second);
+  if (contact_sight_) arguments.seen = contact_sight_->of(first, second);
   if (notes) arguments.noted = contact_notes_->of(first, second);
   if (!welds_.empty()) arguments.welds = welds_[pair_index(first, second, experiment_.field_count)].data();
   return arguments;
@@ -30,12 +30,29 @@ void DeviceBackend<T>::keep_contact_state() {
   for (Body<T>& body : bodies_) run("keep_contact_state", arguments_of(body), body, Checks::stencil);
 }
 
+/// Positions do not move within a step: what is found before the forces holds for all of it.
+template <class T>
+void DeviceBackend<T>::look_at_particles() {
+  if (experiment_.shape.plugin->shape().form == MPM_NODE_LIST) {
+    contact_sight_->forget_reach();
+    contact_sight_->for_each_body([&](std::size_t body, const SeenParticles<T>& seen) {
+      Arguments<T> arguments = arguments_of(bodies_[body]);
+      arguments.seen = seen;
+      launch("find_reach", arguments, bodies_[body].count);
+    });
+  }
+  for (std::size_t a = 0; a < fields_.size(); ++a)
+    for (std::size_t b = a + 1; b < fields_.size(); ++b) {
+      const Arguments<T> arguments = pair_arguments(a, b, Stage::before_forces, false);
+      contact_sight_->forget_nodes();
+      launch("find_meeting_nodes", arguments, nodes());
+      launch_teams("look_at_particles", arguments, contact_sight_->teams());
+    }
+}
+
 template <class T>
 void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time) {
-  if (contact_pairs_ && recorded == Recorded::before_forces) {
-    look();  // a particle that has failed is nowhere
-    contact_pairs_->find(bodies_, fields_);
-  }
+  if (contact_sight_ && recorded == Recorded::before_forces) look_at_particles();
   const auto given = std::make_shared<ContactGiven>();
   const Tally<3> unbalanced = tally<3>();
   const bool after_forces = recorded == Recorded::after_forces;

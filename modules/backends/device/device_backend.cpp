@@ -130,7 +130,6 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
     scene_.exponents = exponents_.data(), scene_.exact_sums = exact_sums_.data();
   }
 
-  if (ContactPoints(experiment).needed()) contact_pairs_.emplace(*device_, experiment, plan, scene_);
   if (records_nodes(experiment)) contact_notes_.emplace(*device_, experiment, scene_);
   for (int k = 0; experiment.measures_traction() && k < experiment.field_count * (experiment.field_count - 1) / 2; ++k)
     welds_.emplace_back(*device_, "welds",
@@ -139,6 +138,8 @@ DeviceBackend<T>::DeviceBackend(const Experiment& experiment, const Plan& plan, 
   for (std::size_t body = 0; body < seeded.size(); ++body) {
     bodies_.emplace_back(*device_, experiment, plan, scene_, static_cast<int>(body), seeded[body], loads_[body]);
   }
+  if (choice.contact_by_particles)
+    contact_sight_.emplace(*device_, experiment, scene_, bodies_, lanes_, setup.contact_row);
   for (int field = 0; field < experiment.field_count; ++field)
     fields_.emplace_back(*device_, experiment, plan, static_cast<std::size_t>(scene_.node_count));
   partial_sums_.resize(room_for_sums(size_of(scene_, experiment.dimension, seeded, loads_, lanes_)));

@@ -1,7 +1,7 @@
 #pragma once
 // The backend of a device executes the passes of a plan as launches of a composition's phases, through a driver's table:
 // libcuda's, or the host's. Particles and nodes stay on the device. Once a step the host takes what phases have
-// summed; it evaluates walls and boxes, and reads particles in a step where contact looks at them.
+// summed; it evaluates walls and boxes.
 
 #include <array>
 #include <memory>
@@ -12,7 +12,7 @@
 #include "backends/device/conditions.hpp"
 #include "backends/device/contact_edges.hpp"
 #include "backends/device/contact_notes.hpp"
-#include "backends/device/contact_pairs.hpp"
+#include "backends/device/contact_sight.hpp"
 #include "backends/device/device.hpp"
 #include "backends/device/device_arrays.hpp"
 #include "backends/device/formula_numbers.hpp"
@@ -231,6 +231,8 @@ class DeviceBackend final : public Backend, public OffersTotals {
   void keep_contact_state();
   /// Applies the law to every pair of fields, and then those of rigid bodies, whose velocities are those of a time, s.
   void resolve_contact(const StepInfo& step, Recorded recorded, Stage stage, double time);
+  /// Lets the nodes at which fields meet look at particles, where contact asks for it.
+  void look_at_particles();
   Arguments<T> pair_arguments(std::size_t a, std::size_t b, Stage stage, bool notes) const;
   /// Lets all fields meet rigid bodies one after another, and adds what these give.
   void meet_rigid_bodies(double time, const std::shared_ptr<ContactGiven>& all, Stage stage, bool record);
@@ -336,7 +338,7 @@ class DeviceBackend final : public Backend, public OffersTotals {
   bool merges_;                      ///< momenta are scattered with what forces add to them in the step
   bool folds_forces_ = false;        ///< nodes have sums that are folded with the forces
   ContactEdges edges_;
-  std::optional<ContactPairs<T>> contact_pairs_;  ///< where contact looks at particles
+  std::optional<ContactSight<T>> contact_sight_;  ///< where contact looks at particles
   std::optional<ContactNotes<T>> contact_notes_;  ///< where single nodes are recorded
   std::vector<DeviceArray<double>> welds_;        ///< [pair_index] where the law reads the traction
   TimeStepLimit limit_;

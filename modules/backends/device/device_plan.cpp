@@ -7,6 +7,7 @@
 #include "backends/device/cache.hpp"
 #include "backends/device/drivers/host_compiler.hpp"
 #include "backends/device/drivers/nvrtc.hpp"
+#include "simulation/contact_points.hpp"
 
 namespace mpm::device {
 namespace {
@@ -49,6 +50,17 @@ double sum_of(const std::vector<TakenMemory>& memory, int body) {
 
 }  // namespace
 
+std::string who_looks_at_particles(const Experiment& experiment) {
+  const ContactPoints points(experiment);
+  const auto named = [&](const char* key, const Component& component) {
+    return experiment.contact->pointer + "/" + key + " \"" + std::string(component.plugin->id()) + "\"";
+  };
+  std::string names;
+  if (points.gives_normal()) names = named("normal", *experiment.contact_normal);
+  if (points.sees_surfaces()) names += (names.empty() ? "" : ", ") + named("detection", *experiment.contact_detection);
+  return names;
+}
+
 const Multiprocessor& multiprocessor(const std::string& architecture) {
   std::string names;
   for (const Multiprocessor& known : multiprocessors()) {
@@ -64,6 +76,7 @@ DevicePlan device_plan(const Experiment& experiment, const Plan& plan, const Mul
   result.composition = composition.name, result.processor = processor;
   for (const BodySpecification& body : experiment.bodies) result.bodies.push_back(body.name);
   result.memory = taken_by_one(experiment, plan);
+  result.looks = who_looks_at_particles(experiment);
   for (const std::string& entry : composition.entries)
     result.kernels.push_back(entry.substr(std::string("mpm_").size()));
   std::optional<Nvrtc> nvrtc = Nvrtc::find(result.missing);
@@ -94,6 +107,9 @@ std::string DevicePlan::to_text() const {
             fields_text(memory, body);
   text += row("  %.0f bytes a node, with all velocity fields\n", bytes_per_node()) +
           fields_text(memory, TakenMemory::of_nodes);
+  if (!looks.empty())
+    text += "  " + looks +
+            ": nodes where fields meet look at particles, once a step (find_meeting_nodes, look_at_particles)\n";
   text += "  " + std::to_string(kernels.size()) + " kernels";
   if (!missing.empty()) return text + "; what they take is not known: " + missing + "\n";
   text += ", as " + compiler + " compiles them for " + processor.architecture + " (nothing was run), with " +
@@ -115,6 +131,7 @@ Json DevicePlan::to_json() const {
                               {"body", field.body < 0 ? Json() : Json(field.body)},
                               {"bytes", field.bytes},
                               {"within_a_step", field.working}});
+  if (!looks.empty()) json["looks_at_particles"] = looks;
   json["kernel_count"] = kernels.size();
   if (!missing.empty()) {
     json["missing"] = missing;

@@ -14,6 +14,7 @@ struct DevicePlan {
   std::vector<std::string> bodies;     ///< names
   std::vector<TakenMemory> memory;     ///< of one particle of each body and of one node
   std::vector<std::string> kernels;    ///< phases of the composition
+  std::string looks;                   ///< who asks nodes to look at particles where fields meet; empty for nobody
   std::string compiler;                ///< NVRTC with its version; empty where there is none
   std::string missing;                 ///< what is missing where there is no compiler
   Multiprocessor processor;            ///< of the architecture that was compiled for
@@ -28,6 +29,9 @@ struct DevicePlan {
 /// Composes the scene and compiles it for an architecture, "sm_90"; what the compiler says is kept in the cache of
 /// programs. Throws ComposeError, and CompilerError where NVRTC refuses the composition.
 DevicePlan device_plan(const Experiment& experiment, const Plan& plan, const Multiprocessor& processor);
+
+/// Who asks nodes to look at particles where fields meet, as the plan names it; empty for nobody.
+std::string who_looks_at_particles(const Experiment& experiment);
 
 /// The architecture of a name. Throws std::invalid_argument with those that there are.
 const Multiprocessor& multiprocessor(const std::string& architecture);

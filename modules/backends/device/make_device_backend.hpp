@@ -24,6 +24,9 @@ struct DeviceSetup {
   /// Steps after which the grid is forgotten (kernels/active_nodes.hpp). Behind a body the nodes that it has left stay active
   /// as long.
   long steps_to_forget = 16;
+  /// Particles near a node that a lane has room for where contact looks at particles; -1: as many as the scene asks for.
+  /// Nodes that see more find them anew each time, with the same outcome.
+  int contact_row = -1;
 };
 
 /// Makes the backend; `plan` is that of an experiment with the backend "cuda". All memory is taken here. Throws

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "backends/device/compose.hpp"
+#include "backends/device/contact_sight.hpp"
 #include "backends/device/fields.hpp"
 #include "backends/device/particle_formulas.hpp"
 #include "backends/device/results.hpp"
@@ -50,7 +51,10 @@ std::vector<TakenMemory> taken_by_each(const Experiment& experiment, const Plan&
   };
   const int of_contact = 2 + experiment.dimension, of_weld = 1 + experiment.dimension,
             of_note = 2 + 2 * experiment.dimension;
-  if (ContactPoints(experiment).needed()) add_to_pairs("contact", of_contact, of_contact * scalar + sizeof(int));
+  if (ContactPoints(experiment).needed()) {
+    add_to_pairs("contact", of_contact, of_contact * scalar + sizeof(int));
+    all.push_back({"nodes that meet", TakenMemory::of_nodes, 1, static_cast<double>(nodes) * sizeof(int), true});
+  }
   if (experiment.measures_traction()) add_to_pairs("welds", of_weld, of_weld * sizeof(double));
   if (records_nodes(experiment)) add_to_pairs("contact nodes", of_note, of_note * scalar + sizeof(int));
   if (sums_deterministically(experiment)) {
@@ -82,6 +86,9 @@ std::vector<TakenMemory> taken_memory(const Experiment& experiment, const Plan& 
   }
   const std::size_t runs = (size.nodes + nodes_of_run - 1) / nodes_of_run;
   all.push_back({"active", TakenMemory::of_nodes, 1, static_cast<double>(runs) * experiment.field_count, true});
+  if (const SightRoom sight(experiment, size.nodes, size.lanes); sight.row_length > 0)
+    all.push_back(
+        {"rows of particles", TakenMemory::of_run, 1, static_cast<double>(sight.numbers()) * sizeof(double), true});
   const ParticleFormulas formulas(experiment);
   all.push_back({"formula numbers", TakenMemory::of_run, 1,
                  static_cast<double>(formulas.count()) * bytes_of_scalar(experiment), true});

@@ -110,11 +110,28 @@ struct BlockArrays {
   int *cell, *begin, *order;       ///< [block with particles][3] first cell; [blocks with particles + 1]; [particle]
 };
 
-/// How two fields meet, as the host found it by looking at particles.
+/// A body as nodes look at its particles where fields meet.
 template <class T>
-struct FoundContact {
-  const int* valid;  ///< [node]
-  const T* values;   ///< [node] separation, then area, then [D][node] normal (ContactGeometry)
+struct SeenBody {
+  const T *position, *sides, *size;  ///< sides: a matrix whose columns make the semi-sides; null where nobody asks
+  int stride;
+  double half_side;  ///< what makes semi-sides in cells of `sides`, of a particle of size 1
+  int* nearest;      ///< [1] how far the particles' lists reach, in whole cells, with the other sign
+  BlockArrays blocks;
+};
+
+/// How nodes look at the particles of the pair `grid` and `other`, and what they find (kernels/contact_points.hpp).
+template <class T>
+struct SeenParticles {
+  const SeenBody<T>* bodies[2];  ///< of each field
+  int count[2];
+  double lower[3], cell_size;    ///< m
+  double reach;                  ///< how far from a node its particles lie at most, beside the domains of lists, cells
+  int *meeting_count, *meeting;  ///< [1], and the nodes at which the fields meet, in any order
+  double* rows;                  ///< [particle][D][lane] places that each lane keeps, cells from its node
+  int row_length, lanes;         ///< particles that a row has room for; how many lanes look at the same time
+  int* valid;                    ///< [node]
+  T* values;                     ///< [node] separation, then area, then [D][node] normal (ContactGeometry)
 };
 
 /// What contact does to a pair at each node, for the host to read; null in steps that record no nodes.
@@ -160,7 +177,7 @@ struct Arguments {
   ParticleArrays<T> particles;
   NodeArrays<T> grid, other;
   EdgeTable edges[2];     ///< contact: of `grid` and of `other`
-  FoundContact<T> found;  ///< contact: in scenes that look at particles
+  SeenParticles<T> seen;  ///< contact: in scenes that look at particles
   NotedContact<T> noted;  ///< contact: in scenes that record nodes
   double* welds;          ///< contact: [D + 1][node] impulse and area of WeldOfPair, where the law reads the traction
   RigidArrays rigid;      ///< rigid_contact

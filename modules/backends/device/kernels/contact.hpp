@@ -48,41 +48,55 @@ MPM_HD double around_node(const Arguments<T>& a, int node) {
   return around_axis(double(a.lower[0]) + column * double(a.cell_size));
 }
 
-/// How two fields meet at a node: as follows from sums over nodes, or as the host found it.
+/// Finds the normal of a pair by sums over its node; false where there is none.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD bool find_normal(const Arguments<T>& a, const ContactFieldNode& of_a, const ContactFieldNode& of_b,
+                        ContactGeometry& found) {
+  using Normal = typename Scene::Normal;
+  constexpr int D = Scene::dimension;
+  NormalPair<D, double> pair;
+  NormalResult<D, double> result{};
+  for (int c = 0; c < D; ++c) {
+    pair.mass_gradient_a[c] = of_a.mass_gradient[c], pair.mass_gradient_b[c] = of_b.mass_gradient[c];
+    pair.volume_gradient_a[c] = of_a.volume_gradient[c], pair.volume_gradient_b[c] = of_b.volume_gradient[c];
+  }
+  Normal::find(parameters_of<Normal>(a.normal_parameters), pair, result);
+  if (!(result.found > 0)) return false;
+  for (int c = 0; c < D; ++c) {
+    found.normal[c] = result.normal[c];
+    if constexpr (Scene::own_normals) found.own_a[c] = result.own_a[c], found.own_b[c] = result.own_b[c];
+  }
+  return true;
+}
+
+/// Finds gap and area of a pair along its normal; `seen` has the surfaces of particles, where the detection reads these.
+template <class Scene, class T = typename Scene::Scalar>
+MPM_HD void find_gap(const Arguments<T>& a, int node, const ContactFieldNode& of_a, const ContactFieldNode& of_b,
+                     [[maybe_unused]] DetectionPair<double> seen, ContactGeometry& found) {
+  constexpr int D = Scene::dimension;
+  if constexpr (!Scene::bypasses_detection) {
+    using Detection = typename Scene::Detection;
+    const double h = a.cell_size;
+    if constexpr (Scene::reads_means || Scene::reads_edges) see_means(seen, of_a, of_b, found.normal, h, D);
+    if constexpr (Scene::reads_edges) see_edges(seen, a.edges[0], a.edges[1]);
+    if constexpr (!Scene::reads_means) seen.mean_a = seen.mean_b = 0;
+    found.separation = h * Detection::gap(parameters_of<Detection>(a.detection_parameters), seen);
+  }
+  found.area = contact_area(of_a, of_b, found.normal, D, around_node<Scene>(a, node));
+}
+
+/// How two fields meet at a node: as follows from sums over nodes, or as the phase before has found by looking at particles.
 template <class Scene, class T = typename Scene::Scalar>
 MPM_HD ContactGeometry geometry_of_pair(const Arguments<T>& a, int node) {
-  constexpr int D = Scene::dimension;
   ContactGeometry found;
   if constexpr (Scene::contact_by_particles) {
-    found.valid = a.found.valid[node] != 0;
-    found.separation = a.found.values[node], found.area = a.found.values[a.node_count + node];
-    for (int c = 0; c < D; ++c) found.normal[c] = a.found.values[(2 + c) * a.node_count + node];
+    found.valid = a.seen.valid[node] != 0;
+    found.separation = a.seen.values[node], found.area = a.seen.values[a.node_count + node];
+    for (int c = 0; c < Scene::dimension; ++c) found.normal[c] = a.seen.values[(2 + c) * a.node_count + node];
   } else {
-    using Normal = typename Scene::Normal;
     const ContactFieldNode of_a = contact_field<Scene>(a, a.grid, node), of_b = contact_field<Scene>(a, a.other, node);
-    NormalPair<D, double> pair;
-    NormalResult<D, double> result{};
-    for (int c = 0; c < D; ++c) {
-      pair.mass_gradient_a[c] = of_a.mass_gradient[c], pair.mass_gradient_b[c] = of_b.mass_gradient[c];
-      pair.volume_gradient_a[c] = of_a.volume_gradient[c], pair.volume_gradient_b[c] = of_b.volume_gradient[c];
-    }
-    Normal::find(parameters_of<Normal>(a.normal_parameters), pair, result);
-    if (!(result.found > 0)) return found;
-    for (int c = 0; c < D; ++c) {
-      found.normal[c] = result.normal[c];
-      if constexpr (Scene::own_normals) found.own_a[c] = result.own_a[c], found.own_b[c] = result.own_b[c];
-    }
-    if constexpr (!Scene::bypasses_detection) {
-      using Detection = typename Scene::Detection;
-      DetectionPair<double> seen{};
-      const double h = a.cell_size;
-      if constexpr (Scene::reads_means || Scene::reads_edges) see_means(seen, of_a, of_b, found.normal, h, D);
-      if constexpr (Scene::reads_edges) see_edges(seen, a.edges[0], a.edges[1]);
-      if constexpr (!Scene::reads_means) seen.mean_a = seen.mean_b = 0;
-      found.separation = h * Detection::gap(parameters_of<Detection>(a.detection_parameters), seen);
-    }
-    found.area = contact_area(of_a, of_b, found.normal, D, around_node<Scene>(a, node));
-    found.valid = true;
+    found.valid = find_normal<Scene>(a, of_a, of_b, found);
+    if (found.valid) find_gap<Scene>(a, node, of_a, of_b, {}, found);
   }
   return found;
 }

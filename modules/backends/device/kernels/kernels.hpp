@@ -101,6 +101,13 @@
 #define MPM_DEVICE_CONTACT_ENTRIES \
   MPM_DEVICE_PHASE(mpm_contact, contact<Scene>, (mpm::device::sum_scalars<Scene, mpm::device::contact_sums>))
 
+// The composer includes contact_points.hpp in scenes that have these.
+#define MPM_DEVICE_CONTACT_POINTS_ENTRIES                                \
+  MPM_DEVICE_PHASE(mpm_find_meeting_nodes, find_meeting_nodes<Scene>, 1) \
+  MPM_DEVICE_PHASE(mpm_look_at_particles, look_at_particles<Scene>, 1)
+
+#define MPM_DEVICE_CONTACT_REACH_ENTRIES MPM_DEVICE_PHASE(mpm_find_reach, find_reach<Scene>, 1)
+
 #define MPM_DEVICE_CONTACT_STATE_ENTRIES MPM_DEVICE_PHASE(mpm_keep_contact_state, keep_contact_state<Scene>, 1)
 
 #define MPM_DEVICE_TRACTION_ENTRIES MPM_DEVICE_PHASE(mpm_measure_welds, measure_welds<Scene>, 1)
