@@ -109,6 +109,26 @@ TEST_CASE("the table of the impact is the figure's", "[docs]") {
   }
 }
 
+TEST_CASE("the table of what moves the impact's losses is the figure's", "[docs]") {
+  const Cells table = table_after("disc_impact.md", "Energy lost with one thing changed at a time"),
+              cells = figure("disc_impact_contact");
+  const std::map<std::string, std::string> name{
+      {"nothing", "nothing"},
+      {"both discs a quarter of a cell further", "a quarter of a cell further"},
+      {"normal by logistic regression", "logistic regression"},
+      {"float", "float"},
+      {"twice the step", "twice the step"}};
+  REQUIRE(table.size() == 2 + name.size());
+  for (std::size_t row = 2; row < table.size(); ++row)
+    for (std::size_t k = 1; k < table[0].size(); ++k) {
+      INFO(table[row][0] << ", " << table[0][k]);
+      if (table[row][k] == "inverts")
+        CHECK_THROWS(value(cells, {name.at(table[row][0]), table[0][k]}, 2));
+      else
+        CHECK(value(cells, {name.at(table[row][0]), table[0][k]}, 2) == printed(table[row][k]));
+    }
+}
+
 TEST_CASE("the table of curved bodies in contact is the figure's", "[docs]") {
   const Page page("docs/contact.md");
   const Cells cells = figure("curved_contact");
