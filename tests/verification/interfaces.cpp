@@ -124,6 +124,34 @@ TEST_CASE("a cantilever of two planks bends by the stiffness of the layer betwee
   }
 }
 
+// Each half of two bars is drawn outwards by a force that acts on its outer cells alone and grows over many periods. A layer
+// carries what it is drawn by: at rest the middles of the ends are apart by sigma (2 L / E + 1 / D) more than at first, where
+// the stress is that of the whole length but for what the drawn cells lack.
+TEST_CASE("bars on a spring are longer at rest by sigma (2 L / E + 1 / D)", "[interface]") {
+  for (const double ratio : {0.05, 0.5, 5.0}) {
+    const Bars bars = opening(ratio, 0);
+    const double pull = 2, drawn = 0.05;  // N/kg; m of each bar
+    const double stress = density * pull * drawn;
+    // The stress falls to zero over the drawn cells, which count half.
+    const double exact = stress * (2 * (bars.length - drawn / 2 - drawn / 6) / modulus + 1 / bars.stiffness);
+    Scene scene(bars.text, {set("/solver/end_time", "1.5"), set("/damping", R"({"viscous": 20})"),
+                            R"J(/body_force=["2*min(1, t/0.5)*((X>0.45)-(X<0.05))", 0])J"});
+    scene.run();
+    double length = 0;
+    for (const int body : {0, 1}) {
+      const BodyState state = scene.body(body);
+      double sum = 0, count = 0;
+      for (std::size_t p = 0; p < state.position.size(); p += 2)
+        if (body == 0 ? state.initial_position[p] < 0.05 : state.initial_position[p] > 0.45)
+          sum += state.position[p] - state.initial_position[p], count += 1;
+      length += (body == 0 ? -1 : 1) * sum / count;
+    }
+    std::printf("Layer of D L / E = %g: bars longer by %.5e of %.5e m\n", ratio, length, exact);
+    INFO(ratio);
+    CHECK(length == Approx(exact).epsilon(0.015));
+  }
+}
+
 // After a quarter of a period the bars rest, and all their energy is in the layer.
 TEST_CASE("what contact takes from bars on a spring is in the spring", "[interface][ledger]") {
   for (const auto& [name, bars] : {std::pair{"opening", opening(0.01)}, std::pair{"sliding", sliding(0.01)}}) {
