@@ -48,9 +48,10 @@ const char* const pressed_blocks = R"J({
   "solver": {"time_step": "auto", "end_time": 1}
 })J";
 
-/// What `mpm plan` prints of the passes of a step, a line each.
+/// What `mpm plan` prints of the passes of a step that are kept apart, a line each.
 std::vector<std::string> passes_with(const std::string& update) {
-  const Plan plan = make_plan(experiment_from(pressed_blocks, {set("/solver/stress_update", update)}));
+  const Plan plan = make_plan(
+      experiment_from(pressed_blocks, {set("/solver/stress_update", update), set("/solver/passes", "separate")}));
   std::istringstream text(plan.to_text());
   std::vector<std::string> passes;
   bool begun = false;
