@@ -155,6 +155,11 @@ TEST_CASE("a clamp is looked for in the particles of its own material, in axisym
                                             {"melting_temperature", 1000},
                                             {"thermal", {{"conductivity", 1}, {"heat_capacity", 10}}}}),
                        1);
+  // The temperature that single precision makes of the default room temperature lies below it.
+  for (const char* precision : {"float", "double"}) {
+    hot["precision"] = precision, hot["bodies"][0]["temperature"] = 293.15;
+    CHECK_FALSE(has(warned(hot), "T* stays at"));
+  }
   for (const double temperature : {999, 1001}) {
     hot["bodies"][0]["temperature"] = temperature;
     CHECK(has(warned(hot), ": above T = 1e+03 K, T* stays at 1") == (temperature > 1000));

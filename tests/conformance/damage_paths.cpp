@@ -195,6 +195,11 @@ TEST_CASE(
   CHECK(refused({{{0.2, 1}, {0.4, 0.4}}}) == "");
   CHECK(refused({{{0.4, 0.5}, {0.4, 0.4}}}) == "opening_2");
   CHECK(refused({{{0.2, 0.5}, {0.4, 0.3}, {0.5, 0.31}}}) == "share_3");
+  CHECK(refused({{{0, 0}, {0.4, 0.4}}}) == "opening_2");
+  CHECK(refused({{{0, 0.5}}}) == "share_1");
+  Damage::Parameters linear = tabulated_concrete(0.01, {{{0.2, 0.5}}});
+  linear.softening = static_cast<double>(SofteningLaw::linear);
+  CHECK(std::string(Damage::refusal(linear, {3, 0}).parameter) == "opening_1");
   // The middle line loses 0.9 on a way of 0.1.
   const std::array<TablePoint, 4> steep{{{0.45, 1}, {0.55, 0.1}}};
   const double area = 0.45 + 0.055 + 0.0225, widest = 0.1 / 0.9 / area * young * toughness / (strength * strength);

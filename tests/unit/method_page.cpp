@@ -41,17 +41,16 @@ namespace {
 const char* const pressed_blocks = R"J({
   "title": "two blocks", "dimension": 2,
   "grid": {"cell_size": 0.25, "domain": [[0, 0], [1, 1]], "boundaries": {"all": "slip"}},
-  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "flip"}, "contact": {"type": "coulomb", "friction": 0},
+  "shape": {"type": "cpdi"}, "transfer": {"type": "flip"}, "contact": {"type": "coulomb", "friction": 0},
   "materials": {"a": {"type": "neo_hookean", "density": 1000, "youngs_modulus": 1e4, "poisson_ratio": 0.2}},
   "bodies": [{"name": "lower", "material": "a", "geometry": {"type": "box", "lower": [0, 0], "upper": [1, 0.5]}},
              {"name": "upper", "material": "a", "geometry": {"type": "box", "lower": [0, 0.5], "upper": [1, 1]}}],
   "solver": {"time_step": "auto", "end_time": 1}
 })J";
 
-/// What `mpm plan` prints of the passes of a step that are kept apart, a line each.
+/// What `mpm plan` prints of the passes of a step, a line each, of a scene that is not fused.
 std::vector<std::string> passes_with(const std::string& update) {
-  const Plan plan = make_plan(
-      experiment_from(pressed_blocks, {set("/solver/stress_update", update), set("/solver/passes", "separate")}));
+  const Plan plan = make_plan(experiment_from(pressed_blocks, {set("/solver/stress_update", update)}));
   std::istringstream text(plan.to_text());
   std::vector<std::string> passes;
   bool begun = false;

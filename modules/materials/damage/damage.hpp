@@ -15,6 +15,8 @@
 #include "kernel/hencky.hpp"
 #include "kernel/softening.hpp"
 #if MPM_HOST
+#include <limits>
+
 #include "plugin/tables.hpp"
 #endif
 
@@ -199,6 +201,17 @@ struct Damage {
         return {shares[k], "a crack does not become stronger as it opens: the shares of a table do not grow",
                 table.share[k - 1]};
     }
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const double further[][2] = {
+        {p.opening_1, p.share_1}, {p.opening_2, p.share_2}, {p.opening_3, p.share_3}, {p.opening_4, p.share_4}};
+    const int used = law == SofteningLaw::table ? table.lines - 1 : 0;
+    for (int k = used; k < SofteningTable::points; ++k)
+      if (further[k][0] != 0 || further[k][1] != 0)
+        return {further[k][0] != 0 ? openings[k + 1] : shares[k + 1],
+                law == SofteningLaw::table
+                    ? "the points of a table are given one after the other, each with an opening above 0"
+                    : "points belong to \"softening\": \"table\"",
+                none};
     const double widest = widest_band(law, p.youngs_modulus, p.tensile_strength, p.fracture_energy, table);
     const double largest = widest / p.band_cells;
     if (p.cell_size < largest) return {nullptr, nullptr, 0};

@@ -39,9 +39,11 @@ struct JohnsonCook : J2Plasticity {
   static void clamp_bounds(const Parameters& p, double* bound) {
     bound[0] = p.melting_temperature, bound[1] = p.room_temperature;
   }
+  /// A metal at either temperature is not beyond it for what rounding, also of single precision, makes of it.
   template <class AnyState>
   static unsigned acting_clamps(const double* bound, const AnyState& state) {
-    return (state.temperature > bound[0] ? 1u : 0u) | (state.temperature < bound[1] ? 2u : 0u);
+    const double margin = 1e-3 * (bound[0] - bound[1]);
+    return (state.temperature > bound[0] + margin ? 1u : 0u) | (state.temperature < bound[1] - margin ? 2u : 0u);
   }
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(youngs_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,

@@ -123,6 +123,7 @@ class Grid {
   void for_each_image(std::size_t slot, Visit&& visit) const;
   void activate_mirrors();
   void mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies);
+  void spread(std::vector<char>& marked, bool to_images) const;
   void clear_where_no_field_is();
   void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
                 const std::vector<std::int32_t>& slot_now);
@@ -214,6 +215,23 @@ void Grid<D, T>::activate_mirrors() {
   }
 }
 
+/// Marks slots that have images among the marked ones, or the images of those, until there are no more.
+template <int D, class T>
+void Grid<D, T>::spread(std::vector<char>& marked, bool to_images) const {
+  for (bool grew = true; grew;) {
+    grew = false;
+    for (std::size_t slot = 0; slot < found_.size(); ++slot)
+      for_each_image(slot, [&](const BlockCoordinates& image) {
+        char &of_slot = marked[slot], &of_image = marked[table_.find(image)];
+        const char from = to_images ? of_slot : of_image;
+        char& to = to_images ? of_image : of_slot;
+        if (!from || to) return;
+        to = 1;
+        grew = true;
+      });
+  }
+}
+
 /// Contact looks at nodes of shared slots alone, and at those near rigid bodies, which move between two sorts. What is
 /// folded onto a shared slot counts there.
 template <int D, class T>
@@ -223,15 +241,7 @@ void Grid<D, T>::mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies)
   if (!scene_.plan.resolves_contact() || anywhere) return;
   std::vector<char> meets(found_.size(), 0);
   for (const std::uint32_t slot : shared_) meets[slot] = 1;
-  for (bool grew = !shared_.empty(); grew;) {
-    grew = false;
-    for (std::size_t slot = 0; slot < found_.size(); ++slot)
-      for_each_image(slot, [&](const BlockCoordinates& image) {
-        if (meets[slot] || !meets[table_.find(image)]) return;
-        meets[slot] = 1;
-        grew = true;
-      });
-  }
+  spread(meets, /*to_images=*/false);
   for (Particles<D, T>& particles : bodies)
     for (Block<D>& block : particles.blocks) {
       const auto around = [&](auto&& visit) {
@@ -242,6 +252,7 @@ void Grid<D, T>::mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies)
       around([&](int slot) { block.may_meet |= meets[slot] != 0; });
       if (block.may_meet) around([&](int slot) { near_shared_[slot] = 1; });
     }
+  spread(near_shared_, /*to_images=*/true);  // what folds add to a slot that no block reaches is cleared as well
 }
 
 template <int D, class T>
@@ -440,7 +451,7 @@ T Grid<D, T>::largest_component(Channel c) const {
   });
 }
 
-/// Only where something has been scattered since.
+/// Only where scatters and folds may have added something.
 template <int D, class T>
 void Grid<D, T>::clear(Channel c) {
   T* const values = channels_[c].data.data();
@@ -453,7 +464,7 @@ void Grid<D, T>::clear(Channel c) {
   });
 }
 
-/// Nothing is scattered there until the grid is built anew.
+/// Nothing is added there until the grid is built anew.
 template <int D, class T>
 void Grid<D, T>::clear_where_no_field_is() {
   if (fields_ == 1) return;

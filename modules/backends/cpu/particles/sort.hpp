@@ -371,7 +371,10 @@ class Sorter {
       block.at = targets_[number].at;
       block.first_chunk = chunks_;
       block.count = targets_[number].count;
-      if (number < old) block.neighbours = particles_.blocks[number].neighbours;
+      if (number < old) {
+        block.neighbours = particles_.blocks[number].neighbours;
+        block.may_meet = particles_.blocks[number].may_meet;  // where no block comes or goes the grid is not built anew
+      }
       targets_[number].number = static_cast<std::int32_t>(index);
       chunks_ += chunks_of(block.count);
     }
