@@ -185,9 +185,7 @@ TEST_CASE("damage: a table without points is linear softening, and one with a po
   }
 }
 
-TEST_CASE(
-    "damage: a table whose openings do not grow or whose shares do is refused, and bands that its steepest line does "
-    "not span") {
+TEST_CASE("damage: tables whose openings do not grow, or shares do, are refused, and bands that would snap back") {
   const auto refused = [](std::array<TablePoint, 4> points, double width = 0.01) {
     const mpm_refusal refusal = Damage::refusal(tabulated_concrete(width, points), {3, 0});
     return std::string(refusal.parameter ? refusal.parameter : "");
