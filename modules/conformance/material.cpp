@@ -142,8 +142,7 @@ Matrix3 deformation(const MaterialBatch& batch, int field, int lane) {
 }
 
 /// The gradient dpsi/dF by central differences, all lanes at once; `batch` is left as it was.
-Increments energy_gradient(MaterialBatch& batch, int field) {
-  constexpr double h = 1e-5;
+Increments energy_gradient(MaterialBatch& batch, int field, double h) {
   const int D = batch.variant.dimension;
   Array& F = batch.state[static_cast<std::size_t>(field)];
   const Array kept = F;
@@ -165,14 +164,17 @@ void check_hyperelastic(const Context& c, const std::vector<Increments>& path) {
   c.findings.require("hyperelastic_state", field >= 0, "a hyperelastic material declares `deformation_gradient`");
   if (field < 0 || c.variant.single()) return;
   MaterialBatch batch = after_path(c.plugin, c.variant, c.parameters, path);
-  const Increments gradient = energy_gradient(batch, field);
+  // A law may bend at a strain, as where a crack closes: differences that straddle it err, and a tenth as wide do so less.
+  const Increments wide = energy_gradient(batch, field, 1e-5), narrow = energy_gradient(batch, field, 1e-6);
   Worst stress, symmetric;
   for (int lane = 0; lane < full; ++lane) {
-    const Matrix3 exact = gradient[lane] * transposed(deformation(batch, field, lane)), tau = batch.tau(lane);
+    const Matrix3 F = transposed(deformation(batch, field, lane)), exact = wide[lane] * F, nearer = narrow[lane] * F,
+                  tau = batch.tau(lane);
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j) {
-        stress.add(std::abs(tau(i, j) - exact(i, j)) / c.modulus, lane);
-        symmetric.add(std::abs(exact(i, j) - exact(j, i)) / c.modulus, lane);
+        stress.add(std::min(std::abs(tau(i, j) - exact(i, j)), std::abs(tau(i, j) - nearer(i, j))) / c.modulus, lane);
+        symmetric.add(std::min(std::abs(exact(i, j) - exact(j, i)), std::abs(nearer(i, j) - nearer(j, i))) / c.modulus,
+                      lane);
       }
   }
   c.findings.at_most("stress_from_energy", c.variant, stress, 1e-8, "|tau - dpsi/dF F^T| over rho c^2" + c.where);

@@ -214,8 +214,8 @@ TEST_CASE("what is switched on adds its own rows, and each names the line that a
   const Json contact = plan_of(scene);
   CHECK(attributes(contact).size() == 2 * attributes(bare).size());
   CHECK(total(contact, "attributes", "bytes_per_particle") == 200);
-  CHECK(fields(contact) ==
-        Words{"momentum 64", "mass 0", "velocity 0", "force 64", "volume_gradient 64", "mass_position 64"});
+  CHECK(fields(contact) == Words{"momentum 64", "mass 0", "velocity 0", "next_momentum 64", "next_mass 0", "force 64",
+                                 "volume_gradient 64", "mass_position 64"});
   CHECK(contact["velocity_fields"] == 2);
   CHECK(contact["weight_gradients"] == true);
   CHECK(because(contact, "fields", "force") == "line 1: /contact \"coulomb\": acts before and after the forces");

@@ -191,7 +191,7 @@ TEST_CASE("damage: tables whose openings do not grow, or shares do, are refused,
     return std::string(refusal.parameter ? refusal.parameter : "");
   };
   CHECK(refused({{{0.2, 1}, {0.4, 0.4}}}) == "");
-  CHECK(refused({{{0.4, 0.5}, {0.4, 0.4}}}) == "opening_2");
+  CHECK(refused({{{0.4, 0.5}, {0.4, 0.4}}}) == "opening_1");
   CHECK(refused({{{0.2, 0.5}, {0.4, 0.3}, {0.5, 0.31}}}) == "share_3");
   CHECK(refused({{{0, 0}, {0.4, 0.4}}}) == "opening_2");
   CHECK(refused({{{0, 0.5}}}) == "share_1");

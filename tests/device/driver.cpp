@@ -191,7 +191,8 @@ Memory memory_of_many_bodies(double cell_size, const std::string& contact, const
   const device::SceneSize size = scene_size(experiment, backend);
   Memory memory{static_cast<double>(device::bytes_on_host(0)), 0,
                 static_cast<double>(backend.particle_bytes() + backend.grid_bytes()), 0, size.blocks};
-  const std::set<std::string> beside{"blocks", "contact", "exact sums", "tables of blocks", "sums"};
+  const std::set<std::string> beside{
+      "blocks", "contact", "exact sums", "nodes that meet", "rows of particles", "tables of blocks", "sums"};
   for (const device::TakenMemory& taken : device::taken_memory(experiment, plan, size)) {
     memory.counted += taken.bytes;
     if (!beside.count(taken.field)) memory.of_fields += taken.bytes;

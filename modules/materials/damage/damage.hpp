@@ -15,8 +15,6 @@
 #include "kernel/hencky.hpp"
 #include "kernel/softening.hpp"
 #if MPM_HOST
-#include <limits>
-
 #include "plugin/tables.hpp"
 #endif
 
@@ -194,24 +192,23 @@ struct Damage {
     const SofteningTable table = table_of(p);
     constexpr const char* openings[] = {"", "opening_1", "opening_2", "opening_3", "opening_4"};
     constexpr const char* shares[] = {"", "share_1", "share_2", "share_3", "share_4"};
-    for (int k = 1; law == SofteningLaw::table && k < table.lines; ++k) {
-      if (!(table.opening[k] > table.opening[k - 1]))
-        return {openings[k], "the openings of a table grow from point to point, from 0 to 1", table.opening[k - 1]};
+    const int points = law == SofteningLaw::table ? table.lines - 1 : 0;
+    for (int k = points; k > 0; --k)  // from the last point, which 1 bounds, each bounds the one before it
+      if (!(table.opening[k] < table.opening[k + 1]))
+        return {openings[k], "the openings of a table grow from point to point, from 0 to 1", table.opening[k + 1]};
+    for (int k = 1; k <= points; ++k)
       if (!(table.share[k] <= table.share[k - 1]))
         return {shares[k], "a crack does not become stronger as it opens: the shares of a table do not grow",
                 table.share[k - 1]};
-    }
-    const double none = std::numeric_limits<double>::quiet_NaN();
     const double further[][2] = {
         {p.opening_1, p.share_1}, {p.opening_2, p.share_2}, {p.opening_3, p.share_3}, {p.opening_4, p.share_4}};
-    const int used = law == SofteningLaw::table ? table.lines - 1 : 0;
-    for (int k = used; k < SofteningTable::points; ++k)
+    for (int k = points; k < SofteningTable::points; ++k)
       if (further[k][0] != 0 || further[k][1] != 0)
         return {further[k][0] != 0 ? openings[k + 1] : shares[k + 1],
                 law == SofteningLaw::table
                     ? "the points of a table are given one after the other, each with an opening above 0"
                     : "points belong to \"softening\": \"table\"",
-                none};
+                0};
     const double widest = widest_band(law, p.youngs_modulus, p.tensile_strength, p.fracture_energy, table);
     const double largest = widest / p.band_cells;
     if (p.cell_size < largest) return {nullptr, nullptr, 0};
