@@ -36,14 +36,14 @@ int count(const std::string& text, const std::string& part) {
 
 const Json solid{{"youngs_modulus", 1e5}, {"poisson_ratio", 0.3}, {"density", 1000}};
 
-Json law(const std::string& type, Json with) {
+Json law(const std::string& type, const Json& with) {
   Json material = solid;
   material["type"] = type;
   material.update(with);
   return material;
 }
 
-Json liquid(const std::string& type, const std::string& form, Json with = Json::object()) {
+Json liquid(const std::string& type, const std::string& form, const Json& with = Json::object()) {
   Json material{{"type", type}, {"equation_of_state", form}, {"bulk_modulus", 1000}, {"density", 1000}};
   material.update(with);
   return material;

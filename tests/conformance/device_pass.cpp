@@ -547,10 +547,10 @@ void run_material(const Plugin& plugin, int D, const ParameterSample& parameters
 void run_normal_by_points(const Plugin& plugin, int D, const ParameterSample& parameters, Call& call) {
   const auto gathered = [&](const Column& column, int components, int lane) {
     Column values(static_cast<std::size_t>(components) * 16);  // [component][place]
-    for (int k = 0; k < 16; ++k)
-      for (int c = 0; c < components; ++c)
-        values[static_cast<std::size_t>(c * 16 + k)] =
-            column[static_cast<std::size_t>(k * components + c) * particles + lane];
+    const auto of_point = static_cast<std::size_t>(components);
+    for (std::size_t k = 0; k < 16; ++k)
+      for (std::size_t c = 0; c < of_point; ++c)
+        values[c * 16 + k] = column[(k * of_point + c) * particles + static_cast<std::size_t>(lane)];
     values.resize(components == 1 ? 16 : 48, 0.0);
     return values;
   };
