@@ -2,21 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "plugin/extension_of.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm {
-namespace {
-
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-}  // namespace
-
 ClampWatch::ClampWatch(const Plugin& material, const std::vector<double>& parameters)
     : material_(&material), parameters_(&parameters), table_(extension_of<mpm_material_clamps>(material)) {
   if (!table_) return;
@@ -53,9 +43,9 @@ std::vector<std::string> ClampWatch::warnings(const std::string& name) const {
   for (std::size_t k = 0; k < seen_.size(); ++k) {
     if (seen_[k].particles == 0) continue;
     const mpm_clamp& clamp = table_->clamps[k];
-    all.push_back("material \"" + name + "\" was clamped from t = " + digits(seen_[k].time) + " s on (" +
+    all.push_back("material \"" + name + "\" was clamped from t = " + support::three_digits(seen_[k].time) + " s on (" +
                   std::to_string(seen_[k].particles) + (seen_[k].particles == 1 ? " particle" : " particles") +
-                  " then): " + clamp.where + " " + digits(bounds_[k]) + clamp.unit + ", " + clamp.what +
+                  " then): " + clamp.where + " " + support::three_digits(bounds_[k]) + clamp.unit + ", " + clamp.what +
                   " (mpm describe " + std::string(material_->id()) + ")");
   }
   return all;

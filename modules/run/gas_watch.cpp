@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "kernel/equation_of_state.hpp"
 #include "metrics/particle_quantities.hpp"
+#include "simulation/boundary.hpp"
 #include "simulation/rigid_place.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::app {
 namespace {
+
+using support::three_digits;
 
 using Cell = std::array<int, 3>;
 using Cells = std::set<Cell>;
@@ -36,11 +39,21 @@ std::optional<double> pressure_at_rest(const Component& gas) {
   return gas.parameter("bulk_modulus") / gas.parameter("heat_capacity_ratio");
 }
 
+/// The cell within the domain whose image beyond a periodic face this one is.
+Cell wrapped(const Experiment& experiment, Cell cell) {
+  for (int c = 0; c < experiment.dimension; ++c)
+    if (experiment.faces[c][0].type == ConditionType::periodic) {
+      const int cells = experiment.grid.cells[c];
+      cell[c] = (cell[c] % cells + cells) % cells;
+    }
+  return cell;
+}
+
 Cell cell_of(const Experiment& experiment, const double* position) {
   Cell cell{};
   for (int c = 0; c < experiment.dimension; ++c)
     cell[c] = static_cast<int>(std::floor((position[c] - experiment.grid.lower[c]) / experiment.grid.cell_size + 1e-9));
-  return cell;
+  return wrapped(experiment, cell);
 }
 
 Cells cells_of(const Experiment& experiment, const BodyState& state) {
@@ -73,7 +86,8 @@ class Room {
       for (const int side : {-1, 1}) {
         Cell near = cell, far = cell;
         near[axis] += side, far[axis] += 2 * side;
-        if (is_empty(near) && is_empty(far)) return true;
+        if (is_empty(wrapped(simulation_.experiment(), near)) && is_empty(wrapped(simulation_.experiment(), far)))
+          return true;
       }
     return false;
   }
@@ -94,12 +108,6 @@ class Room {
   const Simulation& simulation_;
   Cells taken_;
 };
-
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -149,19 +157,23 @@ void GasWatch::look_for_expansion(Gas& gas) {
 
 void GasWatch::look_for_meetings() {
   const Experiment& experiment = simulation_.experiment();
+  std::vector<std::optional<Cells>> known(gases_.size());  // found once a row, where a gas still may meet another
+  const auto cells = [&](int gas) -> const Cells& {
+    if (!known[gas]) known[gas] = cells_of(experiment, simulation_.backend().body_state(gases_[gas].body));
+    return *known[gas];
+  };
   for (Meeting& meeting : meetings_) {
     if (meeting.met) continue;
-    const auto cells = [&](int gas) {
-      return cells_of(experiment, simulation_.backend().body_state(gases_[gas].body));
-    };
-    const Cells first = cells(meeting.first), second = cells(meeting.second);
-    for (const Cell& cell : first)
-      for (int axis = 0; axis < experiment.dimension && !meeting.met; ++axis)
+    const Cells &first = cells(meeting.first), &second = cells(meeting.second);
+    meeting.met = std::any_of(first.begin(), first.end(), [&](const Cell& cell) {
+      for (int axis = 0; axis < experiment.dimension; ++axis)
         for (const int side : {-1, 0, 1}) {
           Cell near = cell;
           near[axis] += side;
-          meeting.met = meeting.met || second.count(near) > 0;
+          if (second.count(wrapped(experiment, near)) > 0) return true;
         }
+      return false;
+    });
   }
 }
 
@@ -171,8 +183,8 @@ std::vector<std::string> GasWatch::warnings() const {
   std::vector<std::string> all;
   for (const Gas& gas : gases_) {
     if (gas.expanded == 0) continue;
-    all.push_back("gas " + name(gas) + " expanded freely, to J = " + digits(gas.expanded) +
-                  " from J = " + digits(gas.largest_ratio) +
+    all.push_back("gas " + name(gas) + " expanded freely, to J = " + three_digits(gas.expanded) +
+                  " from J = " + three_digits(gas.largest_ratio) +
                   " at most: pressures are those above the pressure at rest, which lies on every free surface, so that "
                   "this is no vacuum and the gas stops at its own density at rest; confine it by walls or a piston, or "
                   "fill what is around it with gas (docs/plugins.md#ideal_gas)");
@@ -182,7 +194,7 @@ std::vector<std::string> GasWatch::warnings() const {
     const Gas &a = gases_[meeting.first], &b = gases_[meeting.second];
     std::string text = "gas " + name(a) + " met gas " + name(b) + ": ";
     if (a.pressure && b.pressure && std::abs(*a.pressure - *b.pressure) > 1e-6 * *a.pressure)
-      text += "their pressures at rest, " + digits(*a.pressure) + " and " + digits(*b.pressure) +
+      text += "their pressures at rest, " + three_digits(*a.pressure) + " and " + three_digits(*b.pressure) +
               " Pa, differ, and each is in balance at its own: give both one, and the density that each has there; ";
     text += experiment.bodies[a.body].field == experiment.bodies[b.body].field
                 ? "with one velocity for both, their boundary is known to no better than a cell, and the density of "

@@ -234,4 +234,10 @@ TEST_CASE("gases that meet are warned of, in one field and in contact, with thei
   Json apart = gases(air, other);
   apart["bodies"][1]["geometry"] = {{"type", "box"}, {"lower", {0.5, 0}}, {"upper", {0.8, 1}}};
   CHECK(!has(warned(apart), "met gas"));
+  // Across a periodic face they meet.
+  Json across = apart;
+  across["bodies"][1]["geometry"] = {{"type", "box"}, {"lower", {0.7, 0}}, {"upper", {1, 1}}};
+  CHECK(!has(warned(across), "met gas"));
+  across["grid"]["boundaries"]["x_min"] = across["grid"]["boundaries"]["x_max"] = "periodic";
+  CHECK(has(warned(across), "gas \\\"left\\\" met gas"));
 }
