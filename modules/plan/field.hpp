@@ -54,7 +54,7 @@ struct Field {
   Folded folded = Folded::never;
   bool cleared = false;     ///< nodes hold zero when a step's first scatter begins
   bool for_ledger = false;  ///< only the ledger reads it at nodes, so it may rest in the steps that have no entry
-  /// Only contact wants it apart, so that particles which no other body comes near may give it elsewhere.
+  /// Only contact reads it, or wants it apart, so that particles which no other body comes near need not give it.
   bool for_contact = false;
   std::string beside;       ///< nodes keep this scalar as the fourth of that vector's group of four
   std::string in_place_of;  ///< nodes keep it in the memory of that field, which nobody reads any more

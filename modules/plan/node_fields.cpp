@@ -209,6 +209,10 @@ void contact_fields(FieldList& fields) {
   if (!fields.plan.resolves_contact()) return;
   const int D = fields.experiment.dimension;
   const Experiment& experiment = fields.experiment;
+  const auto summed = [&](const char* id, const char* unit, int components, AtWall at_wall,
+                          const std::string& because) {
+    fields.summed(id, unit, components, at_wall, Folded::with_mass, because).for_contact = true;
+  };
   const std::string meets = experiment.contact ? experiment.contact->pointer : experiment.rigid_bodies.front().pointer;
   std::string area = meets + ": the area that a node stands for";
   std::string place = experiment.rigid_bodies.empty()
@@ -224,19 +228,17 @@ void contact_fields(FieldList& fields) {
     const bool weld = experiment.contact->plugin->contact().traits & MPM_BYPASSES_DETECTION;
     if (!weld && (detection.detection().traits & (MPM_READS_MEAN_POSITION | MPM_READS_EDGES)))
       place = meets + "/detection \"" + std::string(detection.id()) + "\"";
-    if (traits & MPM_READS_MASS_GRADIENT)
-      fields.summed("mass_gradient", "kg/m", D, AtWall::slip, Folded::with_mass, normal);
+    if (traits & MPM_READS_MASS_GRADIENT) summed("mass_gradient", "kg/m", D, AtWall::slip, normal);
   }
-  fields.summed("volume_gradient", "m^2", D, AtWall::slip, Folded::with_mass, area);
-  if (!place.empty()) fields.summed("mass_position", "kg m", D, AtWall::slip, Folded::with_mass, place);
-  if (experiment.has_compliant_contact())
-    fields.summed("mass_displacement", "kg m", D, AtWall::slip, Folded::with_mass, meets + ": its springs");
+  summed("volume_gradient", "m^2", D, AtWall::slip, area);
+  if (!place.empty()) summed("mass_position", "kg m", D, AtWall::slip, place);
+  if (experiment.has_compliant_contact()) summed("mass_displacement", "kg m", D, AtWall::slip, meets + ": its springs");
   if (experiment.contact_state().empty()) return;
   // Nodes keep vectors of the plane, whether a law has one value or two.
   constexpr int states = MPM_CONTACT_STATES;
   const std::string keeps = FieldList::named(*experiment.contact) + ": its state";
-  fields.summed("mass_state", "kg", states, AtWall::even, Folded::with_mass, keeps);
-  fields.summed("mass_gain", "kg", states, AtWall::even, Folded::with_mass, keeps);
+  summed("mass_state", "kg", states, AtWall::even, keeps);
+  summed("mass_gain", "kg", states, AtWall::even, keeps);
   fields.of_nodes("reached", "", states, keeps).cleared = true;
   fields.of_nodes("met", "", 1, keeps, "reached").cleared = true;
 }

@@ -47,8 +47,6 @@ class Grid {
   explicit Grid(const Scene<D, T>& scene)
       : scene_(scene), fields_(scene.experiment.field_count), next_motion_(channel_of(scene.plan, "next_momentum")) {
     for (const Field* const field : channel_fields(scene.plan)) channels_.emplace_back().field = field;
-    if (const Operator* const contact = scene.plan.find(Act::scatter_contact))
-      for (const Channel c : channels_of(scene.plan, contact->adds)) channels_[c].for_contact = true;
   }
 
   Channel channels() const { return static_cast<Channel>(channels_.size()); }
@@ -113,7 +111,7 @@ class Grid {
   struct Stored {
     const Field* field = nullptr;
     AlignedArray<T> data;
-    bool rests = false, for_contact = false;
+    bool rests = false;
   };
   int activate(const BlockCoordinates& at, std::uint64_t field_bits);
   template <class Visit>
@@ -125,6 +123,10 @@ class Grid {
   void mark_blocks_that_may_meet(std::vector<Particles<D, T>>& bodies);
   void spread(std::vector<char>& marked, bool to_images) const;
   void clear_where_no_field_is();
+  /// Whether nodes that no two bodies are near hold zero. Weight beyond walls corrects forces, wherever these are kept.
+  static bool is_near_others_alone(const Field& field) {
+    return field.for_contact && field.folded == Folded::with_mass;
+  }
   void renumber(Channel channel, const std::vector<BlockCoordinates>& blocks_before,
                 const std::vector<std::int32_t>& slot_now);
   void list_faces();
@@ -455,11 +457,11 @@ T Grid<D, T>::largest_component(Channel c) const {
 template <int D, class T>
 void Grid<D, T>::clear(Channel c) {
   T* const values = channels_[c].data.data();
-  const bool for_contact = channels_[c].for_contact;
+  const bool near_alone = is_near_others_alone(field(c));
   const std::size_t count = slots();
   scene_.team->for_each(fields_ * count, [&](std::size_t block) {
     const std::size_t slot = block % count;
-    if (may_have_mass(static_cast<int>(block / count), slot) && (!for_contact || near_shared_[slot]))
+    if (may_have_mass(static_cast<int>(block / count), slot) && (!near_alone || near_shared_[slot]))
       std::memset(values + block * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
   });
 }
@@ -472,7 +474,8 @@ void Grid<D, T>::clear_where_no_field_is() {
   for (Stored& channel : channels_)
     scene_.team->for_each(fields_ * count, [&](std::size_t block) {
       const std::size_t slot = block % count;
-      if (!may_have_mass(static_cast<int>(block / count), slot) || (channel.for_contact && !near_shared_[slot]))
+      if (!may_have_mass(static_cast<int>(block / count), slot) ||
+          (is_near_others_alone(*channel.field) && !near_shared_[slot]))
         std::memset(channel.data.data() + block * block_nodes * 4, 0, block_nodes * 4 * sizeof(T));
     });
 }

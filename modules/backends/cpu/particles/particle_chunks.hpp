@@ -24,10 +24,6 @@ ParticleStep<D, T, Components>::ParticleStep(const Scene<D, T>& scene, Grid<D, T
     for (const Operator& operation : pass.operators)
       adds_[pass.fused()][static_cast<int>(operation.act)] = channels_of(scene.plan, operation.adds);
   });
-  is_of_contact_.assign(grid.channels(), 0);
-  for (const auto& acts : adds_)
-    for (const Channel c : acts[static_cast<int>(Act::scatter_contact)]) is_of_contact_[c] = 1;
-  if (const Field* const forces = scene.plan.node_field("force")) is_of_contact_[force] = forces->for_contact;
   for (std::size_t k = 0; k < scene.experiment.grips.size(); ++k)
     grips_.push_back({channel_of(scene.plan, grip_field(k)), channel_of(scene.plan, grip_field(k) + "_before")});
   int motion_components = 0;

@@ -43,7 +43,7 @@ template <int D, class T, class Components>
 void ParticleStep<D, T, Components>::flush(int body, const Block<D>& block, Work& work,
                                            const std::vector<Channel>& channels) {
   for (const Channel c : channels)
-    if (block.may_meet || !is_of_contact_[c]) flush(body, block, work, c);
+    if (block.may_meet || !grid_.field(c).for_contact) flush(body, block, work, c);
 }
 
 /// Takes the drift as it was measured; else the sum of the largest moves bounds it.

@@ -127,7 +127,7 @@ template <int D, class T, class Components>
 [[gnu::noinline]] bool ParticleStep<D, T, Components>::scatter_chunk(const Pass& pass, const StepInfo& step,
                                                                      const Chunk& chunk, Work& work, Channel momentum,
                                                                      bool evaluated) {
-  const bool separate = grid_.has(force) && (chunk.block.may_meet || !is_of_contact_[force]);
+  const bool separate = grid_.has(force) && (chunk.block.may_meet || !grid_.field(force).for_contact);
   const bool merged = pass.has(Act::scatter_force) && !separate;
   if (pass.has(Act::scatter_force)) fetch_initial_positions(chunk);
   const bool by_gradient = pass.has(Act::scatter_force) && !scene_.stress_by_affine;

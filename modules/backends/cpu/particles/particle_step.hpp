@@ -441,7 +441,6 @@ class ParticleStep : NamedChannels {
   /// The channels of each pass so far, by its acts and whether the ledger rests.
   std::deque<std::pair<std::uint64_t, std::vector<Channel>>> scattered_channels_;
   std::array<std::array<std::vector<Channel>, act_count>, 2> adds_;  ///< [in a fused pass][act]: channels to add to
-  std::vector<char> is_of_contact_;                                  ///< by channel, whether contact alone asks for it
   std::vector<std::array<Channel, 2>> grips_;  ///< channels of a grip's momentum at the end of the step, and before it
   std::vector<std::vector<GivenToGripped>> given_to_gripped_;  ///< [body][block * grips + grip]
   std::vector<std::unique_ptr<Work>> work_;
