@@ -100,7 +100,7 @@ TEST_CASE("on demand: other backends are libraries of their own") {
 TEST_CASE("on demand: a signal that ends the program ends the build as well, with all that it has started") {
   const PartOfABuild part;
   spill(part.launcher, "cd '" + part.folder.path().string() + R"('
-bash -c 'echo $$ > id; mv id compiler; exec sleep 600'
+bash -c 'echo $$ > id; mv id compiler; exec sleep 60'
 echo on > went_on
 )");
   spill(part.folder / "scene.json", with_other_transfer("apic").dump(1));
@@ -109,7 +109,10 @@ echo on > went_on
     Process process(part.folder, {(part.bin / "mpm").string(), "check", "scene.json"},
                     {"MPM_LAUNCHER=" + part.launcher.string()});
     REQUIRE(process.wait_until([&] { return fs::exists(part.folder / "compiler"); }));
-    const std::string stat = "/proc/" + std::to_string(std::stol(slurp(part.folder / "compiler"))) + "/stat";
+    const std::string of_compiler = "/proc/" + std::to_string(std::stol(slurp(part.folder / "compiler")));
+    const std::string stat = of_compiler + "/stat";
+    // A bash that waits for mv takes a signal that mv outlives for one that mv has dealt with, and goes on.
+    REQUIRE(process.wait_until([&] { return slurp(of_compiler + "/comm") == "sleep\n"; }));
     const auto runs = [&] {
       std::error_code error;
       if (!fs::exists(stat, error)) return false;
