@@ -163,9 +163,10 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
       ->check(CLI::Range(1, 100000000))
       ->needs(extremes);
   auto* out =
-      verb.add_option("--out", options.out, "folder that gets a run folder of each path: numbers, figures, report.html")
+      verb.add_option("--out", options.out,
+                      "folder that gets a run folder of each path: numbers, figures, report.html; with --extremes "
+                      "two figures of all that was passed through")
           ->check([](const std::string& word) { return word.empty() ? "names no folder" : ""; });
-  out->excludes(extremes);
   verb.add_flag("--replace", options.replace, "replaces whatever runs are there")->needs(out);
   verb.footer(
       "Paths:\n" + list +

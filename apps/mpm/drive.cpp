@@ -8,13 +8,12 @@
 #include <map>
 #include <optional>
 
-#include "drive/extremes.hpp"
 #include "drive/read_drive.hpp"
 #include "drive/results.hpp"
 #include "drive/standard_paths.hpp"
 #include "experiment/diagnostics.hpp"
-#include "mpm/bench_suite.hpp"
 #include "mpm/drive.hpp"
+#include "mpm/drive_extremes.hpp"
 #include "mpm/stop_on_signal.hpp"
 #include "output/manifest.hpp"
 #include "output/report.hpp"
@@ -23,6 +22,7 @@
 #include "run/summary.hpp"
 #include "support/files.hpp"
 #include "support/hash.hpp"
+#include "support/numbers.hpp"
 
 namespace mpm::app {
 namespace {
@@ -31,10 +31,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using drive::Course;
 using drive::DriveExperiment;
-
-[[noreturn]] void refuse(const std::string& what, const std::string& message) {
-  throw InputError({Problem{what, 0, 0, "", message}});
-}
 
 Json manifest(const DriveExperiment& path, const std::string& command, const std::string& text) {
   const Plugin& plugin = *path.material().plugin;
@@ -115,18 +111,12 @@ std::pair<Course, int> follow_into(const DriveExperiment& path, const fs::path& 
 
 void refuse_options(const RunOptions& options) {
   const std::string one = "a material point is one particle in the material's plain entry: it takes no ";
-  if (options.backend) refuse("--backend", one + "backend");
-  if (!options.device.empty()) refuse("--device", one + "device");
-  if (options.resume) refuse("--resume", one + "checkpoints, and starts anew");
+  if (options.backend) refuse_input("--backend", one + "backend");
+  if (!options.device.empty()) refuse_input("--device", one + "device");
+  if (options.resume) refuse_input("--resume", one + "checkpoints, and starts anew");
 }
 
 // ---- the verb drive ------------------------------------------------------------------------------------------------
-
-std::string four_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3e", value + 0.0);  // a negative zero becomes zero
-  return text;
-}
 
 /// The material of the command line as it would stand in a file. Throws InputError where a parameter is missing.
 Json material_of(const Plugin& plugin, const DriveOptions& options) {
@@ -135,11 +125,11 @@ Json material_of(const Plugin& plugin, const DriveOptions& options) {
   for (const std::string& given : options.parameters) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
-      refuse("--param", in_quotes(given) + " is not of the form name=value, e.g. density=1000");
+      refuse_input("--param", in_quotes(given) + " is not of the form name=value, e.g. density=1000");
     const std::string name = given.substr(0, equals), text = given.substr(equals + 1);
-    if (name == "type") refuse("--param", "\"type\" is no parameter: the material is the word after `mpm drive`");
+    if (name == "type") refuse_input("--param", "\"type\" is no parameter: the material is the word after `mpm drive`");
     if (const auto before = texts.find(name); before != texts.end())
-      refuse("--param", in_quotes(name) + " is given twice: " + before->second + " and " + text);
+      refuse_input("--param", in_quotes(name) + " is given twice: " + before->second + " and " + text);
     texts[name] = text;
     const Json value = Json::parse(text, nullptr, false);
     material[name] = value.is_discarded() || value.is_structured() ? Json(text) : value;
@@ -152,8 +142,8 @@ Json material_of(const Plugin& plugin, const DriveOptions& options) {
     example += std::string(" --param ") + declared.name + "=…";
   }
   if (list.empty()) return material;
-  refuse("mpm drive " + options.id, "these parameters have no default and need a value:" + list + "\nadd" + example +
-                                        "; units may be written, as in --param 'density=1 g/cm^3'");
+  refuse_input("mpm drive " + options.id, "these parameters have no default and need a value:" + list + "\nadd" +
+                                              example + "; units may be written, as in --param 'density=1 g/cm^3'");
 }
 
 const Plugin& material_plugin(const Registry& registry, const std::string& id) {
@@ -163,7 +153,8 @@ const Plugin& material_plugin(const Registry& registry, const std::string& id) {
     names.emplace_back(plugin->id());
   }
   if (fs::path(id).extension() == ".json")
-    refuse(id, "mpm drive takes the id of a material; a file whose solver is a material point runs with `mpm run`");
+    refuse_input(id,
+                 "mpm drive takes the id of a material; a file whose solver is a material point runs with `mpm run`");
   throw PluginError("no material is called " + in_quotes(id) + did_you_mean(id, names) + "; they are " +
                     quoted_list(names));
 }
@@ -182,7 +173,7 @@ std::string modulus_of(const drive::StandardPath& standard, const DriveExperimen
       by_volume ? -(pressure(next.response) - pressure(start.response)) /
                       std::log(next.response.volume_ratio / start.response.volume_ratio)
                 : (next.response.cauchy(i, j) - start.response.cauchy(i, j)) / (next.F(i, j) - start.F(i, j));
-  return name + four_digits(slope);
+  return name + support::exponential(slope);
 }
 
 void print_row(const drive::StandardPath& standard, const DriveExperiment& path, const Course& course) {
@@ -194,9 +185,11 @@ void print_row(const drive::StandardPath& standard, const DriveExperiment& path,
   const drive::Row& end = course.rows.back();
   const double all = turnover(course);
   std::printf("%-14s%6zu  %-15s%12s%12s%12s%12s%12s%12s\n", standard.name, course.rows.size() - 1,
-              modulus_of(standard, path, course).c_str(), four_digits(shear).c_str(), four_digits(least).c_str(),
-              four_digits(most).c_str(), four_digits(end.response.stored - course.rows[0].response.stored).c_str(),
-              four_digits(end.dissipated).c_str(), four_digits(all > 0 ? residual(course, end) / all : 0).c_str());
+              modulus_of(standard, path, course).c_str(), support::exponential(shear).c_str(),
+              support::exponential(least).c_str(), support::exponential(most).c_str(),
+              support::exponential(end.response.stored - course.rows[0].response.stored).c_str(),
+              support::exponential(end.dissipated).c_str(),
+              support::exponential(all > 0 ? residual(course, end) / all : 0).c_str());
 }
 
 /// The experiment of a standard path. What its reader objects to is the command line's.
@@ -229,75 +222,6 @@ void print_head(const DriveOptions& options, const drive::PathSize& size) {
     for (std::size_t k = 3; k < words.size(); ++k) std::printf("%12s", words[k]);
     std::printf("\n");
   }
-}
-
-/// Prints a row of each extreme. Returns the exit code.
-int print_extremes(const std::string& id, const Component& material, const drive::ExtremeSize& size, int dimension) {
-  const auto rows = drive::extremes(material, dimension, size, stop_requested);
-  std::printf(
-      "%s, %d-D, volume ratios of %s to %s, stretches and shears of %s, each in %d steps and in one, within %s s\n",
-      id.c_str(), dimension, number_text(size.smallest_ratio).c_str(), number_text(1 / size.smallest_ratio).c_str(),
-      number_text(size.stretch).c_str(), size.steps, number_text(size.duration).c_str());
-  std::printf("%-24s%-17s%12s%12s%12s%12s%12s\n", "extreme", "outcome", "J", "pressure", "von Mises", "stored",
-              "speed");
-  std::printf("%-24s%-17s%12s%12s%12s%12s%12s\n", "", "", "", "(Pa)", "(Pa)", "(J/m^3)", "(m/s)");
-  bool all_hold = true;
-  for (const drive::Extreme& row : rows) {
-    all_hold = all_hold && row.holds();
-    std::printf("%-24s%-17s%12s%12s%12s%12s%12s\n", row.name.c_str(), row.outcome_text().c_str(),
-                four_digits(row.end.volume_ratio).c_str(), four_digits(pressure(row.end)).c_str(),
-                four_digits(von_mises_stress(row.end)).c_str(), four_digits(row.end.stored).c_str(),
-                four_digits(row.end.wave_speed).c_str());
-    if (row.drift > 0) std::printf("  stress drifts by %.2g of stiffness x cycles x rounding\n", row.drift);
-  }
-  std::printf("The numbers are those of the last state that was taken.\n");
-  if (!stop_requested()) return all_hold ? done : run_failed;
-  std::printf("stopped by a signal before the next extreme\n");
-  return interrupted;
-}
-
-/// Prints a row of each material that is installed: what it answers at the extremes, or where it fails.
-int drive_every_material(const DriveOptions& options) {
-  const Registry registry = load_registry();
-  const BenchSuite suite(registry, false);
-  const StopOnSignal signals;
-  drive::ExtremeSize size;
-  size.duration = options.duration, size.cycles = options.cycles;
-  std::printf("%-25s%24s%24s%12s%12s%12s%12s\n", "", "J = 1e-6", "J = 1e6", "drawn", "pressed", "sheared", "drift of");
-  std::printf("%-25s%12s%12s%12s%12s%12s%12s%12s%12s\n", "material", "pressure", "speed", "pressure", "speed", "by 1e4",
-              "to 1e-4", "by 1e4", "cycles");
-  std::printf("%-25s%12s%12s%12s%12s%36s%12s\n", "", "(Pa)", "(m/s)", "(Pa)", "(m/s)", "von Mises stress (Pa)", "");
-  int worst = done;
-  for (const Plugin* plugin : registry.of_kind(MPM_MATERIAL)) {
-    const int dimension = options.dimension ? options.dimension : plugin->descriptor->dimensions & MPM_3D ? 3 : 2;
-    if (const std::string unknown = suite.unknown_parameter(*plugin); !unknown.empty()) {
-      std::printf("%-25s  left out, the benchmarks have no value for %s: drive it by its name\n",
-                  std::string(plugin->id()).c_str(), unknown.c_str());
-      continue;
-    }
-    const Component material = suite.material(*plugin);
-    const auto rows = drive::extremes(material, dimension, size, stop_requested);
-    if (stop_requested()) {
-      std::printf("stopped by a signal in %s\n", std::string(plugin->id()).c_str());
-      return interrupted;
-    }
-    const auto at = [&](const char* name) -> const drive::Extreme& {
-      return *std::find_if(rows.begin(), rows.end(), [&](const drive::Extreme& row) { return row.name == name; });
-    };
-    std::printf("%-25s", std::string(plugin->id()).c_str());
-    for (const char* name : {"pressed evenly", "torn evenly"})
-      std::printf("%12.1e%12.1e", pressure(at(name).end) + 0.0, at(name).end.wave_speed);
-    for (const char* name : {"drawn out", "pressed flat", "sheared"})
-      std::printf("%12.1e", von_mises_stress(at(name).end));
-    std::printf("%12.1g\n", rows.back().drift);
-    for (const drive::Extreme& row : rows) {
-      const bool as_expected = row.must_be_refused ? row.holds() : row.outcome == drive::Outcome::right;
-      if (!as_expected) std::printf("  %s: %s\n", row.name.c_str(), row.outcome_text().c_str());
-      if (!row.holds()) worst = run_failed;
-    }
-    std::fflush(stdout);
-  }
-  return worst;
 }
 
 }  // namespace
@@ -335,16 +259,17 @@ int check_material_point(const RunOptions& options) {
 void refuse_material_point(const fs::path& base, const fs::path& study, const std::vector<std::string>& overrides) {
   std::error_code ignored;
   if (!fs::is_regular_file(base, ignored) || !drive::is_material_point(base, overrides)) return;
-  refuse(study.string(), "a study runs scenes, and " + base.filename().string() +
-                             " is a material point: run it by itself with `mpm run`");
+  refuse_input(study.string(), "a study runs scenes, and " + base.filename().string() +
+                                   " is a material point: run it by itself with `mpm run`");
 }
 
 int drive_material(const DriveOptions& options) {
   if (options.id == "every") {
     if (!options.extremes || !options.parameters.empty() || !options.cell_size.empty())
-      refuse("mpm drive every",
-             "takes --extremes, --cycles, --duration and --dimension alone; other paths want one material");
-    return drive_every_material(options);
+      refuse_input(
+          "mpm drive every",
+          "takes --extremes, --cycles, --duration, --dimension and --out alone; other paths want one material");
+    return drive_every_to_extremes(options);
   }
   const Registry registry = load_registry();
   const ComponentLookup lookup(registry);
@@ -359,9 +284,7 @@ int drive_material(const DriveOptions& options) {
   if (options.extremes) {
     const std::string text = drive::standard_path("isotropic", size, material).dump(2);
     const DriveExperiment path = read_standard(options, "extremes", text, lookup);
-    drive::ExtremeSize extremes;
-    extremes.duration = options.duration, extremes.cycles = options.cycles;
-    return print_extremes(options.id, path.material(), extremes, size.dimension);
+    return drive_to_extremes(options, path.material(), size.dimension);
   }
   for (const drive::StandardPath& standard : drive::standard_paths()) {
     if (!options.path.empty() && options.path != standard.name) continue;

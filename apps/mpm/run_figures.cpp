@@ -182,7 +182,8 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   add_if_any("ledger friction", takes_back ? "friction that particles keep" : "of it friction", 1);
   add_if_any("ledger interface springs", "of it taken up by springs", 1);
   add_if_any("ledger material dissipation", "material", 1);
-  add_if_any("ledger artificial viscosity", "of it artificial viscosity", 1);
+  for (const char* cause : {"plastic work", "viscous flow", "damage", "phase change", "artificial viscosity"})
+    add_if_any(("ledger " + std::string(cause)).c_str(), ("of it " + std::string(cause)).c_str(), 1);
   render::write_figure(plot, stem);
 }
 
@@ -306,21 +307,17 @@ std::vector<ColumnFigure> column_figures_of(const nlohmann::json& experiment, co
   return figures;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& what, const std::string& message) {
-  throw InputError({Problem{what.string(), 0, 0, "", message}});
-}
-
 RecordedRun recorded(const std::filesystem::path& folder) {
   RecordedRun run{output::RunFolder::open(folder).root(), "", "", {}};
   const std::filesystem::path numbers = run.folder / "metrics.csv";
   if (!std::filesystem::is_regular_file(numbers))
-    refuse(folder, "holds no metrics.csv: the run ended before its first row");
+    refuse_input(folder.string(), "holds no metrics.csv: the run ended before its first row");
   try {
     run.metrics = support::read_csv(numbers);
   } catch (const std::exception& error) {
-    refuse(folder, std::string("its numbers cannot be read: ") + error.what());
+    refuse_input(folder.string(), std::string("its numbers cannot be read: ") + error.what());
   }
-  if (run.metrics.rows() == 0) refuse(numbers, "holds no row: the run ended before its first one");
+  if (run.metrics.rows() == 0) refuse_input(numbers.string(), "holds no row: the run ended before its first one");
   std::error_code ignored;
   if (const auto file = run.folder / "experiment.json"; std::filesystem::is_regular_file(file, ignored)) {
     const auto experiment = nlohmann::json::parse(support::read_file(file), nullptr, false);
@@ -503,7 +500,7 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
   if (!specification.empty()) specified = read_specification(specification, runs);
   for (const RecordedRun& run : runs)
     if (run.is_material_point && !specified)
-      refuse(
+      refuse_input(
           run.folder,
           "a material point's run has its figures since it ran, in figures/; others are drawn with --spec FILE, which "
           "names columns of metrics.csv, such as {\"x\": \"deformation gradient xx\", \"y\": \"stress xx\"}");
@@ -511,7 +508,7 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
                                        : runs.size() == 1 ? runs.front().folder / "figures"
                                                           : std::filesystem::path("runs/overlay");
   if (std::filesystem::exists(target) && !std::filesystem::is_directory(target))
-    refuse(target, "is a file; choose a folder with --out");
+    refuse_input(target.string(), "is a file; choose a folder with --out");
   std::filesystem::create_directories(target);
   if (specified) {
     draw_overlay(runs, specified->plot, specified->x, specified->columns, specified->labels,

@@ -130,10 +130,6 @@ Results run_or_leave_nothing(const study::Study& plan, const Registry& registry,
 
 constexpr std::size_t most_alternatives = 4;
 
-[[noreturn]] void refuse(const std::string& what, const std::string& message) {
-  throw InputError({Problem{what, 0, 0, "", message}});
-}
-
 fs::path study_folder(const fs::path& given) {
   std::error_code ignored;
   const fs::path folder = fs::is_regular_file(given, ignored) && given.filename() != "study.json"
@@ -141,16 +137,17 @@ fs::path study_folder(const fs::path& given) {
                           : given.filename() == "study.json" ? given.parent_path()
                                                              : given;
   if (fs::is_regular_file(folder / "study.json", ignored)) return folder;
-  refuse(given.string(), fs::exists(given, ignored)
-                             ? folder.string() + " holds no study.json: run `mpm study FILE` first, or name its folder"
-                             : "there is no such study: give the folder that `mpm study` wrote, or its file");
+  refuse_input(given.string(),
+               fs::exists(given, ignored)
+                   ? folder.string() + " holds no study.json: run `mpm study FILE` first, or name its folder"
+                   : "there is no such study: give the folder that `mpm study` wrote, or its file");
 }
 
 Results read_results(const fs::path& folder) {
   try {
     return study::results_from(study_json_in(folder));
   } catch (const std::runtime_error& error) {
-    refuse((folder / "study.json").string(), error.what());
+    refuse_input((folder / "study.json").string(), error.what());
   }
 }
 
@@ -160,7 +157,7 @@ double target_value(const std::string& text, const std::string& unit, const std:
     if (const auto number = parse_number(text)) return *number;
     return to_si(text, unit.empty() || unit == "%" ? "" : unit) * (unit == "%" ? 100 : 1);
   } catch (const UnitError& error) {
-    refuse(option, error.what());
+    refuse_input(option, error.what());
   }
 }
 
@@ -237,8 +234,8 @@ const study::Measure& measure_or_refuse(const Results& results, const std::strin
   if (const study::Measure* measure = results.study.measure(name)) return *measure;
   std::vector<std::string> names;
   for (const study::Measure& measure : results.study.measures) names.push_back(measure.name);
-  refuse(option,
-         "no measure is called " + in_quotes(name) + suggestion(name, names, "measures: " + quoted_list(names)));
+  refuse_input(option,
+               "no measure is called " + in_quotes(name) + suggestion(name, names, "measures: " + quoted_list(names)));
 }
 
 /// The measure that stands for the error. What is below zero somewhere is no error: the least of it is not the best.
@@ -246,8 +243,9 @@ const study::Measure& error_or_refuse(const Results& results, const std::string&
   const study::Measure& measure = measure_or_refuse(results, name, "--measure");
   for (const study::Result& result : results.results)
     if (result.value(name) < 0)
-      refuse("--measure", in_quotes(name) + " is below zero in " + study::label_of(results.study, result.combination) +
-                              ": advice takes the least; give a measure that is zero where nothing is wrong");
+      refuse_input("--measure", in_quotes(name) + " is below zero in " +
+                                    study::label_of(results.study, result.combination) +
+                                    ": advice takes the least; give a measure that is zero where nothing is wrong");
   return measure;
 }
 
@@ -291,12 +289,12 @@ int study(const StudyOptions& options) {
 
 int advise(const AdviseOptions& options) {
   if (options.error.empty() == options.time.empty())
-    refuse("command line", "give either --error, what must be reached, or --time, what may be spent");
+    refuse_input("command line", "give either --error, what must be reached, or --time, what may be spent");
   const fs::path folder = study_folder(options.study);
   Results results = read_results(folder);
   if (!options.measure.empty()) results.study.error = error_or_refuse(results, options.measure).name;
   if (results.study.error.empty())
-    refuse(folder.string(), "the study names no \"error\" among its measures; give one with --measure");
+    refuse_input(folder.string(), "the study names no \"error\" among its measures; give one with --measure");
   const bool by_error = options.time.empty();
   Question question{&measure_or_refuse(results, results.study.error, folder.string()), nullptr, ""};
   study::Advice advice;
@@ -306,7 +304,7 @@ int advise(const AdviseOptions& options) {
     question.target = question.error->label + " of at most " + options.error;
     advice = study::advise_for_error(results, question.cost->name, target);
   } else {
-    if (!options.by.empty()) refuse("--by", "belongs to --error: --time ranks by error");
+    if (!options.by.empty()) refuse_input("--by", "belongs to --error: --time ranks by error");
     question.cost = &measure_or_refuse(results, "seconds", "--time");
     question.target = question.cost->label + " of at most " + options.time;
     advice = study::advise_within(results, "seconds", target_value(options.time, "s", "--time"));

@@ -388,6 +388,17 @@ void check_makes_energy(const Context& c) {
                      "hosts read the heat of materials with MPM_DISSIPATES alone");
 }
 
+/// Checks that a law which names the cause of its dissipation names one that the ledger has, and dissipates.
+void check_dissipation(const Context& c) {
+  const auto* table = extension_of<mpm_material_dissipation>(c.plugin);
+  if (!table) return;
+  c.findings.require("dissipation_cause_known",
+                     table->cause >= std::uint32_t{MPM_PLASTIC_WORK} && table->cause <= std::uint32_t{MPM_DAMAGE},
+                     "an mpm_dissipation_cause");
+  c.findings.require("dissipation_cause_dissipates", c.plugin.material().traits & MPM_DISSIPATES,
+                     "hosts read the heat of materials with MPM_DISSIPATES alone");
+}
+
 /// Checks that clamps have names, and that none acts that is not declared or cannot act with these parameters.
 void check_clamps(const Context& c, const std::vector<Increments>& path) {
   const auto* table = extension_of<mpm_material_clamps>(c.plugin);
@@ -443,6 +454,7 @@ void check_material_extensions(const Context& c, const std::vector<Increments>& 
   check_temperature(c, path);
   check_cell_size(c, path);
   check_makes_energy(c);
+  check_dissipation(c);
   c.findings.running("clamps", c.variant, c.where);
   check_clamps(c, path);
 }

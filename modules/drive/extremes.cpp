@@ -38,9 +38,9 @@ class Extremes {
         stiffness_(stiffness_at_rest(material, MaterialPoint(material, dimension))) {}
 
   /// Equal steps f = I + dt L, `steps` of them, that multiply the volume by `ratio` each.
-  Extreme follow(std::string name, const Matrix& step, double ratio, int steps) const {
+  Extreme follow(std::string name, const Matrix& step, double ratio, int steps, ExtremeKind kind = {}) const {
     Extreme extreme;
-    extreme.name = std::move(name);
+    extreme.name = std::move(name), extreme.kind = kind, extreme.stiffness = stiffness_;
     MaterialPoint point(material_, dimension_);
     const double dt = size_.duration / steps;
     Matrix L = step;
@@ -52,6 +52,11 @@ class Extremes {
       extreme.outcome = judge(response, std::pow(ratio, k), stiffness_);
       if (extreme.outcome != Outcome::right) return extreme;
       extreme.end = response;
+      if (steps == 1) continue;
+      const double size = kind == ExtremeKind::volume    ? std::pow(ratio, k)
+                          : kind == ExtremeKind::stretch ? std::pow(step(0, 0), k)
+                                                         : k * step(0, 1);
+      extreme.course.emplace_back(size, response);
     }
     return extreme;
   }
@@ -119,11 +124,11 @@ class Extremes {
             [=, this] { return follow("the same in one step", even(small), small, 1); },
             [=, this] { return follow("torn evenly", even(std::pow(small, -1.0 / n)), std::pow(small, -1.0 / n), n); },
             [=, this] { return follow("the same in one step", even(1 / small), 1 / small, 1); },
-            [=, this] { return follow("drawn out", drawn(std::pow(s, 1.0 / n)), 1, n); },
+            [=, this] { return follow("drawn out", drawn(std::pow(s, 1.0 / n)), 1, n, ExtremeKind::stretch); },
             [=, this] { return follow("the same in one step", drawn(s), 1, 1); },
-            [=, this] { return follow("pressed flat", drawn(std::pow(s, -1.0 / n)), 1, n); },
+            [=, this] { return follow("pressed flat", drawn(std::pow(s, -1.0 / n)), 1, n, ExtremeKind::stretch); },
             [=, this] { return follow("the same in one step", drawn(1 / s), 1, 1); },
-            [=, this] { return follow("sheared", slid(s / n), 1, n); },
+            [=, this] { return follow("sheared", slid(s / n), 1, n, ExtremeKind::shear); },
             [=, this] { return follow("the same in one step", slid(s), 1, 1); },
             [this] { return must_refuse("turned inside out", diagonal(-1, 1, 1)); },
             [this] { return must_refuse("pressed to nothing", diagonal(0, 1, 1)); },

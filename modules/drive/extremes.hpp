@@ -18,11 +18,18 @@ enum class Outcome {
 };
 const char* name_of(Outcome outcome);
 
+/// What a path goes through: volume ratios, stretches at J = 1, or shears.
+enum class ExtremeKind { volume, stretch, shear };
+
 struct Extreme {
   std::string name;
+  ExtremeKind kind = ExtremeKind::volume;
   Outcome outcome = Outcome::right;
   bool must_be_refused = false;  ///< a state that no body can have
   Response end;                  ///< the last state that was taken
+  double stiffness = 0;          ///< density times the square of the wave speed at rest, Pa
+  /// Of paths of many steps: each state that was taken, with the volume ratio, the stretch or the shear that it has.
+  std::vector<std::pair<double, Response>> course;
   /// Of the cycles: the change of the stress over stiffness at rest, cycles and rounding, 2^-52.
   double drift = 0;
   /// The outcome in words.

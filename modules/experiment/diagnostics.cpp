@@ -60,6 +60,10 @@ std::string Problem::text() const {
 InputError::InputError(std::vector<Problem> problems)
     : std::runtime_error(joined(in_file_order(problems))), problems_(in_file_order(std::move(problems))) {}
 
+void refuse_input(const std::string& what, const std::string& message) {
+  throw InputError({Problem{what, 0, 0, "", message}});
+}
+
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates) {
   if (name.size() > 100) return {};
   std::string best;

@@ -33,6 +33,9 @@ class InputError : public std::runtime_error {
   std::vector<Problem> problems_;
 };
 
+/// Throws InputError with one problem of a whole file, folder or option.
+[[noreturn]] void refuse_input(const std::string& what, const std::string& message);
+
 /// The candidate closest to `name` in edit distance, or empty when none is close enough to be a likely slip.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 

@@ -24,6 +24,21 @@ bool nobody_exchanges(const Experiment& experiment, const std::string& name) {
          (name == "changed material" && std::none_of(experiment.bodies.begin(), experiment.bodies.end(), becomes));
 }
 
+/// Whether a row of a ledger is that of a cause by which no material dissipates.
+bool nobody_dissipates(const Experiment& experiment, const std::string& name) {
+  const auto& materials = experiment.materials;
+  if (name == "phase change")
+    return std::none_of(materials.begin(), materials.end(), [](const MaterialSpecification& material) {
+      return material.thermal && material.thermal->phase_change;
+    });
+  for (const auto& entry : ledger_entries)
+    if (name == entry.name && std::ranges::find(dissipation_rows, entry.value) != std::end(dissipation_rows))
+      return std::none_of(materials.begin(), materials.end(), [&](const MaterialSpecification& material) {
+        return dissipation_of(*material.component.plugin) == entry.value;
+      });
+  return false;
+}
+
 /// Whether the kinetic energy of a particle depends on its place in a cell.
 bool moves_second_moment(const Experiment& experiment, const Plan& plan) {
   const bool carries = experiment.transfer.plugin->transfer().traits & MPM_AFFINE_CARRIES_ENERGY;
@@ -125,7 +140,7 @@ std::vector<ValueRow> Metrics::ledger_rows(const Totals& now) const {
            (!(plan.filters() && falls) && row.name == "filtered gravity") ||
            (!simulation_.experiment().damping.acts() && row.name == "damping") ||
            (!simulation_.experiment().has_artificial_viscosity() && row.name == "artificial viscosity") ||
-           (!remaps && row.name == "remapped strain") ||
+           nobody_dissipates(simulation_.experiment(), row.name) || (!remaps && row.name == "remapped strain") ||
            (simulation_.experiment().rigid_bodies.empty() && row.name == "rigid bodies") ||
            (!simulation_.experiment().has_compliant_contact() && row.name == "interface springs") ||
            (!moves_second_moment(simulation_.experiment(), plan) && row.name == "second moment") ||

@@ -201,6 +201,20 @@ typedef struct mpm_material_makes_energy {
   const char* where; /* in which states, and why, in one sentence */
 } mpm_material_makes_energy;
 
+/* ---- mpm.material.dissipation ------------------------------------------------------------------------------------
+ * What becomes of the `dissipated_energy` of a material's `update`. The energy ledger has a row of its own for each cause;
+ * the energy of a material without this table stands in the row of all materials alone. */
+#define MPM_MATERIAL_DISSIPATION_ID "mpm.material.dissipation"
+#define MPM_MATERIAL_DISSIPATION_VERSION 1u
+enum mpm_dissipation_cause {
+  MPM_PLASTIC_WORK = 1, /* of solids and grains that yield */
+  MPM_VISCOUS_FLOW = 2, /* of fluids, and of solids that creep or relax */
+  MPM_DAMAGE = 3        /* of cracks that open */
+};
+typedef struct mpm_material_dissipation {
+  uint32_t version, cause; /* mpm_dissipation_cause */
+} mpm_material_dissipation;
+
 /* ---- mpm.material.clamps -----------------------------------------------------------------------------------------
  * Where the material goes on otherwise than its law says: a number is held at a bound, or a curve goes on along its
  * tangent. What belongs to the law itself, as the yield of a solid, is no clamp. The host looks at its particles when it

@@ -254,6 +254,7 @@ std::span<const KnownExtension> known_extensions() {
       extension_info<mpm_material_tangent>,
       extension_info<mpm_material_projection>,
       extension_info<mpm_material_makes_energy>,
+      extension_info<mpm_material_dissipation>,
       extension_info<mpm_material_clamps>,
       extension_info<mpm_material_temperature>,
       extension_info<mpm_material_cell_size>,

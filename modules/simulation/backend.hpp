@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "plan/plan.hpp"
+#include "plugin/extension_of.hpp"
 #include "simulation/archive.hpp"
 #include "simulation/failure.hpp"
 
@@ -133,6 +134,18 @@ struct BodyState {
   }
 };
 
+/// What the strain of a body's particles in one step did to energy, J.
+struct StrainEnergies {
+  double dissipated = 0;         ///< by the material and its artificial viscosity
+  double artificial = 0;         ///< share of that which artificial viscosity dissipated
+  double power = 0, stored = 0;  ///< work of the stresses on the strain, and change of the stored energy
+
+  void add(const StrainEnergies& other) {
+    dissipated += other.dissipated, artificial += other.artificial;
+    power += other.power, stored += other.stored;
+  }
+};
+
 /// The energy that each cause has given, J, summed over the steps that the ledger takes. Each cause records what it
 /// applies where it applies it; the last entries say whether these records explain what was measured (docs/method.md, the
 /// ledger).
@@ -151,10 +164,12 @@ struct Ledger {
   double interface = 0;             ///< share of contact that the springs of the law took up (negative: gave back)
   double material = 0;              ///< dissipated by the materials and their artificial viscosity (positive)
   double artificial_viscosity = 0;  ///< share of that which artificial viscosity dissipated
-  double filter = 0;                ///< J.(v + v_filtered)/2 of the filter's impulses
-  double filtered_strain = 0;       ///< what strain by the filtered velocity stores less than by the unfiltered one
-  double filtered_gravity = 0;      ///< potential energy that particles gain less as the filtered velocity moves them
-  double remapped_strain = 0;       ///< what strain by the remapped velocity (MUSL) stores less than by v+
+  double plastic_work = 0, viscous_flow = 0, damage = 0;  ///< shares of it, by what the law says (dissipation_of)
+  double phase_change = 0;                                ///< share of it that was stored and went with a phase
+  double filter = 0;                                      ///< J.(v + v_filtered)/2 of the filter's impulses
+  double filtered_strain = 0;   ///< what strain by the filtered velocity stores less than by the unfiltered one
+  double filtered_gravity = 0;  ///< potential energy that particles gain less as the filtered velocity moves them
+  double remapped_strain = 0;   ///< what strain by the remapped velocity (MUSL) stores less than by v+
   double second_moment = 0;  ///< change of the affine part's kinetic energy, as D changes with the place of a particle
   double stress_power = 0;   ///< work of the stresses on the strain of the particles
   double stored = 0;         ///< stored by the materials while they strain
@@ -167,6 +182,10 @@ struct Ledger {
   double mass_book = 0;      ///< kg, mass of the particles less that of the nodes after the scatter
   double momentum_book = 0;  ///< kg m/s, size of the momentum that the scatter loses, summed over steps
 
+  /// Enters what the strain of a body of this material did in a step.
+  void enter_strain(double Ledger::*dissipation, const StrainEnergies& energies);
+  /// Enters stored energy that particles lost as they took the parameters of their other phase.
+  void enter_phase_change(double lost);
   Ledger plus(const Ledger& other) const;
   Ledger times(double factor) const;
   /// The change of the total energy that the causes explain.
@@ -204,6 +223,10 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
     {"interface springs", &Ledger::interface, 0},
     {"material dissipation", &Ledger::material, -1, 4},
     {"artificial viscosity", &Ledger::artificial_viscosity, 0},
+    {"plastic work", &Ledger::plastic_work, 0},
+    {"viscous flow", &Ledger::viscous_flow, 0},
+    {"damage", &Ledger::damage, 0},
+    {"phase change", &Ledger::phase_change, 0},
     {"filter", &Ledger::filter, 1, 1},
     {"filtered strain", &Ledger::filtered_strain, 1, 5},
     {"filtered gravity", &Ledger::filtered_gravity, 1, 5},
@@ -221,6 +244,29 @@ inline constexpr LedgerEntry<Ledger> ledger_entries[] = {
     {"momentum book", &Ledger::momentum_book, 0, 0, "kg m/s"}};
 static_assert(sizeof(Ledger) == std::size(ledger_entries) * sizeof(double));
 
+/// Rows of what materials dissipate, in the order of mpm_dissipation_cause.
+inline constexpr double Ledger::*dissipation_rows[] = {&Ledger::plastic_work, &Ledger::viscous_flow, &Ledger::damage};
+
+/// The row of what a material dissipates, by its extension mpm.material.dissipation; null where it names no cause.
+inline double Ledger::*dissipation_of(const Plugin& material) {
+  const auto* const table = extension_of<mpm_material_dissipation>(material);
+  if (!table || table->cause < 1 || table->cause > std::size(dissipation_rows)) return nullptr;
+  return dissipation_rows[table->cause - 1];
+}
+
+inline void Ledger::enter_strain(double Ledger::*dissipation, const StrainEnergies& energies) {
+  material += energies.dissipated;
+  artificial_viscosity += energies.artificial;
+  if (dissipation) this->*dissipation += energies.dissipated - energies.artificial;
+  stress_power += energies.power;
+  stored += energies.stored;
+  material_book += energies.power - energies.stored - energies.dissipated;
+}
+inline void Ledger::enter_phase_change(double lost) {
+  material += lost;
+  phase_change += lost;
+  stored -= lost;
+}
 inline Ledger Ledger::plus(const Ledger& other) const {
   Ledger sum;
   for (const auto& [name, value, sign, turn, unit] : ledger_entries) sum.*value = this->*value + other.*value;

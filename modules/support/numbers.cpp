@@ -43,6 +43,13 @@ std::string fixed_point(double value, int decimals) {
                              .ptr};
 }
 
+std::string exponential(double value) {
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value + 0.0,  // no negative zero
+                                       std::chars_format::scientific, 3)
+                             .ptr};
+}
+
 std::string three_digits(double value) {
   std::array<char, 32> digits;
   return {digits.data(),

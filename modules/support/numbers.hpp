@@ -27,6 +27,8 @@ std::string fixed_point(double value, int decimals);
 
 /// The number with three significant digits, as "%.3g" of C writes it.
 std::string three_digits(double value);
+/// Four significant digits with an exponent, as 1.250e+03.
+std::string exponential(double value);
 
 /// A fixed notation without zeros at the end of its fraction, nor a point at its end: "2.50" becomes "2.5", "3.0" "3".
 std::string without_trailing_zeros(std::string digits);

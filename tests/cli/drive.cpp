@@ -1,6 +1,8 @@
 // Material points: files that `mpm run` takes, and `mpm drive`.
 
+#include <array>
 #include <cmath>
+#include <sstream>
 
 #include "cli/program.hpp"
 #include "support/csv.hpp"
@@ -178,6 +180,56 @@ TEST_CASE("a signal stops a material point between two steps, and what was follo
       stopped(with({"drive", "neo_hookean", "--steps", "1000000", "--out", "runs"}, rubber), "runs/uniaxial");
   CHECK(has(drive.out, "uniaxial"));
   CHECK(!fs::exists(folder / "runs/simple_shear"));
+}
+
+// Neo-Hookean: tau = mu (b - I) + lambda ln J I, so that p = -(mu (J^(2/3) - 1) + lambda ln J)/J where it is pressed alike from all
+// sides, and the von Mises stress of a shear g is mu g sqrt(g^2 + 3).
+TEST_CASE("drive: the figures of the extremes hold the law's closed form all along, and are replaced only on demand") {
+  const Folder folder;
+  const Words extremes = with(rubber, {"--extremes", "--cycles", "10", "--out", "far"});
+  const Result result = drive(folder, "neo_hookean", extremes);
+  INFO(result.out << result.err);
+  CHECK(result.code == 0);
+  CHECK(has(result.out, "figure: far/extremes_volume.png"));
+  CHECK(fs::exists(folder / "far/extremes_shape.svg"));
+  const double mu = 1e6 / 2.6, lambda = 1e6 * 0.3 / (1.3 * 0.4);
+  int points = 0, sheared = 0;
+  const auto each_row = [&](const char* name, const auto& visit) {
+    std::istringstream lines(slurp(folder / "far" / name));
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+      std::array<std::string, 4> cells;
+      std::istringstream fields(line);
+      for (std::string& cell : cells) std::getline(fields, cell, ',');
+      visit(cells[0], std::stod(cells[2]), std::stod(cells[3]));
+    }
+  };
+  each_row("extremes_volume.csv", [&](const std::string& series, double J, double stress) {
+    const double pressure = -(mu * (std::pow(J, 2.0 / 3) - 1) + lambda * std::log(J)) / J;
+    CHECK((series == "pressure" ? pressure : -pressure) == Approx(stress).epsilon(1e-9));
+    CHECK((series == "pressure") == (J < 1));
+    ++points;
+  });
+  each_row("extremes_shape.csv", [&](const std::string& series, double size, double stress) {
+    if (series != "sheared") return;
+    CHECK(stress == Approx(mu * size * std::sqrt(size * size + 3)).epsilon(1e-9));
+    ++sheared;
+  });
+  CHECK(points == 200);
+  CHECK(sheared == 100);
+
+  const Result again = drive(folder, "neo_hookean", extremes);
+  CHECK(again.code == 2);
+  CHECK(has(again.err, "far: holds extremes_volume.png already; add --replace, or choose another folder"));
+  CHECK(again.out.empty());
+  spill(folder / "file", "");
+  const Result in_file = drive(folder, "every", {"--extremes", "--cycles", "10", "--out", "file"});
+  CHECK(in_file.code == 2);
+  CHECK(has(in_file.err, "file: is a file; choose a folder with --out"));
+  const Result every = drive(folder, "every", {"--extremes", "--cycles", "10", "--out", "far"});
+  CHECK(every.code == 0);
+  CHECK(has(slurp(folder / "far/extremes.csv"), "neo_hookean,drawn by 10"));
 }
 
 TEST_CASE("drive: options that say nothing or two things are refused, and numbers have their range") {

@@ -103,7 +103,7 @@ TEST_CASE("the bar of the studies of cracks dissipates what its law of softening
     INFO(run.err);
     REQUIRE(run.code == 0);
     const Json summary = json_in(folder / "out/summary.json");
-    CHECK(summary["energy"]["ledger"]["material_dissipation"].get<double>() == Approx(dissipated * area).epsilon(2e-5));
+    CHECK(summary["energy"]["ledger"]["damage"].get<double>() == Approx(dissipated * area).epsilon(2e-5));
     const double width = opening / std::log(summary["stability"]["largest_volume_ratio"].get<double>());
     CHECK(width == Approx(band).epsilon(0.001));
   }

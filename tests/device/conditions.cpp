@@ -2,6 +2,7 @@
 // second moments and its checkpoints.
 
 #include "device/covering.hpp"
+#include "parity/heat_scenes.hpp"
 #include "parity/rigid_scenes.hpp"
 #include "support/results.hpp"
 
@@ -177,7 +178,7 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
   mix.boundaries = R"({"all": "slip", "x_min": "periodic", "x_max": "periodic"})";
   std::map<std::string, double> largest;  ///< over the kinetic energy at the start
   const auto take_entries = [&] {
-    DeviceScene scene(mix.text(), "double");
+    DeviceScene scene(mix.text(), "double", {}, mix.overrides);
     scene.run();
     for (const ValueRow& row : rows_of(scene.simulation.backend().ledger())) {
       double& entry = largest[row.name];
@@ -204,6 +205,19 @@ TEST_CASE("every entry of the ledger on the host-run device", "[device][ledger]"
   mix = close_mix(2);
   mix.contact = R"({"type": "linear_interface", "normal_stiffness": 3e4, "shear_stiffness": 2e4})";
   check_entries();
+  mix = close_mix(2);
+  mix.material = R"({"type": "newtonian_fluid", "bulk_modulus": 2000, "viscosity": 3, "density": 1000})";
+  check_entries();
+  mix.material = R"({"type": "damage", "youngs_modulus": 1000, "poisson_ratio": 0.2, "density": 1000,
+    "tensile_strength": 1, "fracture_energy": 9, "band_cells": 1})";
+  mix.more = R"J(, "body_force": ["99*sin(9*X)", 0])J";  // which tears
+  check_on_device(mix, {"double"});                      // what softens makes rounding grow
+  take_entries();
+  mix = {};
+  mix.close = true, mix.material = material(elastic, melts + "}}");
+  mix = warm(mix);  // which tests/device/heat.cpp checks
+  mix.boundaries = R"({"all": "slip", "x_min": {"type": "slip", "temperature": 60}})";
+  take_entries();
   mix = beside_rigid_bodies(2);  // which tests/device/rigid.cpp checks
   take_entries();
   for (const auto& [name, entry] : largest) {

@@ -174,6 +174,9 @@ struct ExcusedSand : CoolingSand {
 };
 constexpr mpm_material_makes_energy nowhere{MPM_MATERIAL_MAKES_ENERGY_VERSION, 0, ""};
 
+constexpr mpm_material_dissipation by_magic{MPM_MATERIAL_DISSIPATION_VERSION, MPM_DAMAGE + 1},
+    by_yield{MPM_MATERIAL_DISSIPATION_VERSION, MPM_PLASTIC_WORK};
+
 /// Snow whose clamps have no name, or act where they were said not to.
 constexpr mpm_clamp nameless[] = {{"below J =", "", ""}};
 void no_bounds(const void*, double* bound) {
@@ -293,6 +296,13 @@ TEST_CASE("negative heat is caught, and a material that says that it makes energ
   check_caught(material_of<ExcusedSand>, "energy_balance");
   check_caught(with_extension<nowhere>(material_of<VonMises>), "makes_energy_says_where");
   check_caught(with_extension<nowhere>(material_of<NeoHookean>), "makes_energy_dissipates");
+}
+
+TEST_CASE("a cause of dissipation that the ledger does not have, or of a law that dissipates nothing, is caught") {
+  CHECK(was_checked(material_of<VonMises>, "dissipation_cause_known"));
+  CHECK_FALSE(was_checked(material_of<NeoHookean>, "dissipation_cause_known"));
+  check_caught(with_extension<by_magic>(material_of<VonMises>), "dissipation_cause_known");
+  check_caught(with_extension<by_yield>(material_of<NeoHookean>), "dissipation_cause_dissipates");
 }
 
 TEST_CASE("clamps without a name, or that act where they cannot, are caught") {

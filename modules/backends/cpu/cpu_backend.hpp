@@ -71,11 +71,8 @@ class CpuBackend final : public Backend, NamedChannels {
   void gather_scatter(const Pass& pass, const StepInfo& step);
   bool may_pass_motion(const StepInfo& step) const;
   void account_for_gather(const Pass& pass, const typename Step::Gathered& gathered);
-  void account_for_strain(const typename Step::Gathered& dissipation);
+  void account_for_strain(const typename Step::Gathered& gathered);
   void account_for_move();
-  void book_material(const typename Step::Gathered& strained);
-  /// Books the stored energy that goes with a phase.
-  void account_for_phases(double lost) { ledger_.material += lost, ledger_.stored -= lost; }
   void wake_for_ledger(long step);
 
   // ---- cpu_state.hpp
@@ -191,6 +188,7 @@ std::vector<Body<D, T>> CpuBackend<D, T, Components>::make_bodies(std::vector<Se
     const mpm_material& material = body.material->plugin->material();
     body.update_material = material.update[lane_precision<T>][D - 2];
     const auto& viscosity = experiment.materials[experiment.bodies[i].material].artificial_viscosity;
+    body.dissipation = dissipation_of(*body.material->plugin);
     body.dissipates = (material.traits & MPM_DISSIPATES) != 0 || viscosity;
     if (viscosity) {
       const double h = scene_.domain.cell_size;
@@ -343,7 +341,7 @@ void CpuBackend<D, T, Components>::account_for_gather(const Pass& pass, const ty
   if (!accounted_) return;
   grid_step_->book_gather(gathered.kinetic_energy);
   gathered_energy_ = gathered.kinetic_energy;
-  book_material(gathered);
+  ledger_ = ledger_.plus(gathered.strained);
 }
 
 /// Books what the kinetic energy of the particles changes by as their places in the cells do.
@@ -354,18 +352,9 @@ void CpuBackend<D, T, Components>::account_for_move() {
 }
 
 template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::book_material(const typename Step::Gathered& strained) {
-  ledger_.material += strained.dissipated;
-  ledger_.artificial_viscosity += strained.artificial;
-  ledger_.stress_power += strained.stress_power;
-  ledger_.stored += strained.stored;
-  ledger_.material_book += strained.stress_power - strained.stored - strained.dissipated;
-}
-
-template <int D, class T, class Components>
-void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathered& dissipation) {
-  if (accounted_) book_material(dissipation);
-  heat_ledger_.dissipation += dissipation.heat_of_dissipation;
+void CpuBackend<D, T, Components>::account_for_strain(const typename Step::Gathered& gathered) {
+  if (accounted_) ledger_ = ledger_.plus(gathered.strained);
+  heat_ledger_.dissipation += gathered.heat_of_dissipation;
 }
 
 /// Prepares the scatter of a step: what only the ledger reads rests in the steps that the ledger leaves out.
@@ -423,7 +412,7 @@ void CpuBackend<D, T, Components>::execute_pass(const Pass& pass, const StepInfo
     case Act::keep_contact_state:
       return particle_step_->keep_contact_state();
     case Act::change_phase:
-      return account_for_phases(particle_step_->change_phases(step));
+      return ledger_.enter_phase_change(particle_step_->change_phases(step));
     case Act::move:
       particle_step_->move(step);
       return account_for_move();

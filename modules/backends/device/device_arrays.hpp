@@ -22,7 +22,8 @@ struct Body {
   const Component* material;
   const Thermal* thermal = nullptr;  ///< null in scenes without temperature
   HeatOfBody<T> heat{};
-  ArtificialViscosity<T> viscosity{};  ///< zeros where the material has none
+  double Ledger::*dissipation = nullptr;  ///< the row of what the material dissipates
+  ArtificialViscosity<T> viscosity{};     ///< zeros where the material has none
   int number_of_body = 0, field = 0, material_number = 0, count = 0, dimension = 2;
   bool frozen = false;
   T mass = 0, volume = 0, half_size = 0;
@@ -45,6 +46,7 @@ struct Body {
     const BodySpecification& body = experiment.bodies[index];
     number_of_body = index, frozen = body.frozen;
     material = &experiment.materials[body.material].component;
+    dissipation = dissipation_of(*material->plugin);
     if (const auto& given = experiment.materials[body.material].thermal) {
       thermal = &*given;
       heat = heat_of(*thermal, material->parameter("density"));

@@ -101,7 +101,7 @@ void DeviceBackend<T>::change_phase() {
     run_material("change_phase", body);
     if (!accounted_) continue;
     const Tally<3> sums = sum<3>("energy_dissipated", arguments_of(body), body.count);
-    later([this, sums] { ledger_.material += (*sums)[0], ledger_.stored -= (*sums)[0]; });
+    later([this, sums] { ledger_.enter_phase_change((*sums)[0]); });
   }
 }
 

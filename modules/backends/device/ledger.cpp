@@ -85,14 +85,12 @@ void DeviceBackend<T>::book_strain(double Ledger::*row, double share) {
 template <class T>
 void DeviceBackend<T>::book_material(Body<T>& body) {
   const Tally<3> sums = sum<3>("energy_dissipated", arguments_of(body), body.count);
-  later([this, sums] {
+  const Tally<1> artificial = tally<1>();
+  if (body.viscosity.density > 0) sum<1>("artificial_work", arguments_of(body), body.count, artificial);
+  later([this, cause = body.dissipation, sums, artificial] {
     const auto [dissipated, power, stored] = *sums;
-    ledger_.material += dissipated, ledger_.stress_power += power, ledger_.stored += stored;
-    ledger_.material_book += power - stored - dissipated;
+    ledger_.enter_strain(cause, {dissipated, (*artificial)[0], power, stored});
   });
-  if (!(body.viscosity.density > 0)) return;
-  const Tally<1> artificial = sum<1>("artificial_work", arguments_of(body), body.count);
-  later([this, artificial] { ledger_.artificial_viscosity += (*artificial)[0]; });
 }
 
 template <class T>

@@ -152,12 +152,4 @@ void ReferenceBackend::book_gather(const Pass& pass, double dt) {
   if (pass.has(Act::strain)) ledger_.filtered_strain -= pass.share * (power_of_forces(dt) - lumped_power_);
 }
 
-void ReferenceBackend::book_strain(const StrainEnergies& energies) {
-  ledger_.material += energies.dissipated;
-  ledger_.artificial_viscosity += energies.artificial;
-  ledger_.stress_power += energies.power;
-  ledger_.stored += energies.stored;
-  ledger_.material_book += energies.power - energies.stored - energies.dissipated;
-}
-
 }  // namespace mpm::reference

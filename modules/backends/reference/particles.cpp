@@ -14,6 +14,7 @@ Particles::Particles(const Experiment& experiment, const Plan& plan, int body, c
       transfer_(experiment.transfer),
       material_(experiment.materials[experiment.bodies[body].material].component),
       thermal_(experiment.materials[experiment.bodies[body].material].thermal),
+      dissipation_(dissipation_of(*experiment.materials[experiment.bodies[body].material].component.plugin)),
       viscosity_(experiment.materials[experiment.bodies[body].material].artificial_viscosity),
       body_(body),
       field_(experiment.bodies[body].field),

@@ -14,13 +14,6 @@ struct Moments {
   Array &velocity, &increment, &affine, &gradient;
 };
 
-/// Energies of one strain of all particles of a body, J.
-struct StrainEnergies {
-  double dissipated = 0;
-  double artificial = 0;         ///< share of that which artificial viscosity dissipated
-  double power = 0, stored = 0;  ///< work of the stresses on the strain, and change of the stored energy
-};
-
 class Particles {
  public:
   Particles(const Experiment& experiment, const Plan& plan, int body, const SeededBody& seeded);
@@ -63,6 +56,7 @@ class Particles {
   // ---- temperature.cpp
   /// The heat capacity of particle p in its phase, J/K.
   double heat_capacity(std::size_t p) const { return mass(p) * thermal(p).heat_capacity; }
+  double Ledger::*dissipation() const { return dissipation_; }  ///< the row of what the material dissipates
   double share_of_heat() const { return thermal_ ? thermal_->dissipation_to_heat : 0; }  ///< share of dissipation
   double conductivity(std::size_t p) const { return thermal(p).conductivity; }
   double heat() const;  ///< sum of heat capacity times temperature, J
@@ -159,6 +153,7 @@ class Particles {
   const Component& transfer_;
   const Component& material_;
   const std::optional<Thermal>& thermal_;
+  double Ledger::*dissipation_;
   const std::optional<ArtificialViscositySpecification>& viscosity_;
   int body_, field_, dimension_;
   std::size_t count_, padded_;

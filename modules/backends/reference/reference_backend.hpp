@@ -169,7 +169,6 @@ class ReferenceBackend final : public Backend {
   void book_filter();
   void book_forces(double dt);
   void book_gather(const Pass& pass, double dt);
-  void book_strain(const StrainEnergies& energies);
   void book_filtered_strain(double dt);
   double power_of_forces(double dt);
   double power_of_weight(double dt);

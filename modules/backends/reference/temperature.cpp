@@ -286,7 +286,7 @@ void ReferenceBackend::gather_heat(Particles& body, const StepInfo& step) {
 void ReferenceBackend::change_phase() {
   for (Particles& body : bodies_) {
     const double relaxed = body.change_phase(accounted_);
-    if (accounted_) ledger_.material += relaxed, ledger_.stored -= relaxed;
+    if (accounted_) ledger_.enter_phase_change(relaxed);
   }
 }
 

@@ -282,7 +282,7 @@ void ReferenceBackend::strain(const Pass& pass, const StepInfo& step) {
 void ReferenceBackend::strain(Particles& body, double dt) {
   if (plan_.does(Act::average_dilation)) body.mean_dilation = gathered(body, dilation_);
   const StrainEnergies energies = body.strain(dt, accounted_);
-  if (accounted_) book_strain(energies);
+  if (accounted_) ledger_.enter_strain(body.dissipation(), energies);
   account(heat_ledger_.dissipation, body.share_of_heat() * energies.dissipated);
 }
 

@@ -230,6 +230,7 @@ struct CamClay : HenckySolid {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_PLASTIC_WORK;
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
   static constexpr mpm_clamp clamps[] = {
       {"below J_p =", "",

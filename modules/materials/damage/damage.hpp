@@ -185,6 +185,7 @@ struct Damage {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_HYPERELASTIC | MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_DAMAGE;
 
   /// Refuses a table that is none, and cells on which a band would snap back; the largest usable one is `limit`.
   static mpm_refusal refusal(const Parameters& p, const mpm_refusal_case&) {

@@ -125,6 +125,7 @@ struct HerschelBulkley {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_VISCOUS_FLOW;
   MPM_EQUATION_OF_STATE_CLAMPS
   static constexpr mpm_parameter parameters[] = {
       MPM_EQUATION_OF_STATE_PARAMETERS,

@@ -31,6 +31,7 @@ struct JohnsonCook : J2Plasticity {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_PLASTIC_WORK;
   static constexpr mpm_state state[] = {MPM_J2_STATE};
   static constexpr mpm_clamp clamps[] = {
       {"above T =", " K", "T* stays at 1: the metal has melted, and flows without any strength"},

@@ -169,6 +169,7 @@ struct MohrCoulomb : HenckySolid {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_PLASTIC_WORK;
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
   static constexpr mpm_clamp clamps[] = {
       {"above psi =", " rad", "dilation_angle counts as friction_angle, since the law would make energy"},

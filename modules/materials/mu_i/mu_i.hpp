@@ -112,6 +112,7 @@ struct MuI : HenckySolid {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_PLASTIC_WORK;
   static constexpr mpm_clamp clamps[] = {
       {"below mu_2 =", "", "limit_friction counts as static_friction, so that friction does not depend on the rate"},
       {"below", " kg/m^3", "critical_density counts as density, so that the packing begins in contact"},

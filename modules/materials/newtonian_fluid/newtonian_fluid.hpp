@@ -80,6 +80,7 @@ struct NewtonianFluid {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_VISCOUS_FLOW;
   MPM_EQUATION_OF_STATE_CLAMPS
   static constexpr mpm_parameter parameters[] = {
       MPM_EQUATION_OF_STATE_PARAMETERS,

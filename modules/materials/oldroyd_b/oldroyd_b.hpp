@@ -96,6 +96,7 @@ struct OldroydB {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_VISCOUS_FLOW;
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(bulk_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "bulk modulus K of the liquid"),

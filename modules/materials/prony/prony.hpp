@@ -113,6 +113,7 @@ struct Prony {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_VISCOUS_FLOW;
   static constexpr mpm_parameter parameters[] = {
       MPM_NUMBER_PARAMETER(shear_modulus, "Pa", required, 0.0, unbounded, 0,
                            "mu, shear modulus after all relaxation; 0 is a liquid"),

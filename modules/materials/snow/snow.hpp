@@ -229,6 +229,7 @@ struct Snow {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_PLASTIC_WORK;
   static constexpr const char* makes_energy =
       "where snow parts under pressure from its sides, and where xi J_P theta_c is large: each stretch returns to its "
       "bound by itself, whatever the stress along it, and hardening scales the stored energy";

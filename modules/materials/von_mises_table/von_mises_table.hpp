@@ -44,6 +44,7 @@ struct VonMisesTable : J2Plasticity {
 
 #if MPM_HOST
   static constexpr unsigned traits = MPM_OBJECTIVE | MPM_DISSIPATES;
+  static constexpr mpm_dissipation_cause dissipates_by = MPM_PLASTIC_WORK;
   static constexpr mpm_state state[] = {MPM_J2_STATE};
   static constexpr bool projects = true;  ///< an update without strain returns what is beyond the yield surface
 

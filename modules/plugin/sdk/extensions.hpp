@@ -1,7 +1,7 @@
 #pragma once
 // The extensions of extensions.h as the SDK makes them from a functor. Some every functor gets for nothing (costs, a
 // material's trial and tangent); others come with a member of the functor: `box` and its fellows, `basis_order`,
-// `courant_limits`, `step_limit`, `projects`, `makes_energy`, `clamps`, `refusal`, a `temperature` at the end of State, a
+// `courant_limits`, `step_limit`, `projects`, `makes_energy`, `dissipates_by`, `clamps`, `refusal`, a `temperature` at the end of State, a
 // `cell_size` at the end of Parameters.
 
 #include <cmath>
@@ -81,6 +81,12 @@ concept RefusesTangent = requires {
 template <class F>
 concept MakesEnergy = requires {
   { F::makes_energy } -> std::convertible_to<const char*>;
+};
+
+/// A material that dissipates says by what: `static constexpr mpm_dissipation_cause dissipates_by = MPM_PLASTIC_WORK`.
+template <class F>
+concept NamesDissipation = requires {
+  { F::dissipates_by } -> std::convertible_to<mpm_dissipation_cause>;
 };
 
 /// A material that is clamped somewhere names its clamps: `static constexpr mpm_clamp clamps[]`, with `static void
@@ -431,6 +437,9 @@ inline constexpr mpm_contact_step_limit contact_step_limit_table{
 template <MakesEnergy F>
 inline constexpr mpm_material_makes_energy makes_energy_table{MPM_MATERIAL_MAKES_ENERGY_VERSION, 0, F::makes_energy};
 
+template <NamesDissipation F>
+inline constexpr mpm_material_dissipation dissipation_table{MPM_MATERIAL_DISSIPATION_VERSION, F::dissipates_by};
+
 template <Clamped F>
 inline constexpr std::uint32_t clamp_count = sizeof(F::clamps) / sizeof(mpm_clamp);
 template <class F, int D, bool Axisymmetric>
@@ -520,6 +529,8 @@ const void* material_extension(const char* id) {
     if (same_text(id, MPM_MATERIAL_PROJECTION_ID)) return &projection_table<F>;
   if constexpr (MakesEnergy<F>)
     if (same_text(id, MPM_MATERIAL_MAKES_ENERGY_ID)) return &makes_energy_table<F>;
+  if constexpr (NamesDissipation<F>)
+    if (same_text(id, MPM_MATERIAL_DISSIPATION_ID)) return &dissipation_table<F>;
   if constexpr (Clamped<F>)
     if (same_text(id, MPM_MATERIAL_CLAMPS_ID)) return &clamps_table<F>;
   if constexpr (TemperatureFunctor<F>)

@@ -61,16 +61,19 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   failure_.raise();
   Gathered sum;
   if (!accounted_ && !scene_.plan.has_heat_ledger()) return sum;  // blocks lie with the threads that worked on them
-  for (const auto& particles : particles_)
-    for (const Block<D>& block : particles.blocks) {
+  for (std::size_t body = 0; body < particles_.size(); ++body) {
+    StrainEnergies strained;
+    double phase_change = 0;
+    for (const Block<D>& block : particles_[body].blocks) {
       sum.kinetic_energy += block.kinetic_energy;
-      sum.dissipated += block.dissipated;
-      sum.artificial += block.artificial;
-      sum.stress_power += block.stress_power;
-      sum.stored += block.stored;
+      strained.add(block.strained);
+      phase_change += block.phase_change;
       sum.heat += block.heat;
       sum.heat_of_dissipation += block.heat_of_dissipation;
     }
+    sum.strained.enter_strain(bodies_[body].dissipation, strained);
+    sum.strained.enter_phase_change(phase_change);
+  }
   return sum;
 }
 
@@ -82,8 +85,8 @@ typename ParticleStep<D, T, Components>::Gathered ParticleStep<D, T, Components>
   for (auto& work : work_) work->moved = {};
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body)
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
-      block.kinetic_energy = block.dissipated = block.heat_of_dissipation = 0;
-      block.stress_power = block.stored = block.artificial = 0;
+      block.kinetic_energy = block.phase_change = block.heat_of_dissipation = 0;
+      block.strained = {};
       if (pass.has(Act::gather_heat)) gather_heat(body, block, work, step);
       if (pass.has(Act::strain)) load_mean(body, block, work, dilation);
       load_velocities(body, block, work);
@@ -114,8 +117,8 @@ typename ParticleStep<D, T, Components>::Fused ParticleStep<D, T, Components>::g
     for_each_block(body, true, [&](Block<D>& block, Work& work) {
       load_velocities(body, block, work);
       begin_reach(block, work);
-      block.kinetic_energy = block.dissipated = block.scattered_energy = block.scattered_mass = 0;
-      block.stress_power = block.stored = block.artificial = 0, block.scattered_momentum = {};
+      block.kinetic_energy = block.phase_change = block.scattered_energy = block.scattered_mass = 0;
+      block.strained = {}, block.scattered_momentum = {};
       for_each_chunk_of(
           body, block,
           [&](const Chunk& chunk) {
@@ -207,7 +210,7 @@ auto ParticleStep<D, T, Components>::strain(const Pass& pass, const StepInfo& st
       kernels_.load(work.velocity_tile.data(), grid_.channel(motion, bodies_[body].field), block.neighbours.data(),
                     block.reach);
       load_mean(body, block, work, dilation);
-      block.dissipated = block.heat_of_dissipation = block.stress_power = block.stored = block.artificial = 0;
+      block.phase_change = block.heat_of_dissipation = 0, block.strained = {};
       block.bounds.known = false;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) {
         gather_chunk(chunk, work, wanted);
@@ -434,7 +437,7 @@ void ParticleStep<D, T, Components>::advance_material(const Chunk& chunk, Work& 
     const Lanes<T> energy = Lanes<T>::load(work.scalar + p);
     return size ? energy * Lanes<T>::load(size + p) : energy;
   };
-  chunk.block.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
+  chunk.block.strained.dissipated += chunk.body.volume * sum_of_particles<T>(chunk.count, energies);
 }
 
 /// Adds half of the work of the stresses `now` on a strain, and the stored energy: before the strain with the other sign,
@@ -462,8 +465,8 @@ void ParticleStep<D, T, Components>::book_stress(const Chunk& chunk, const mpm_m
     power += share * sum;
     stored += share * at(energy, 0);
   }
-  chunk.block.stress_power += 0.5 * strain.dt * chunk.body.volume * power;
-  chunk.block.stored += (after ? 1 : -1) * chunk.body.volume * stored;
+  chunk.block.strained.power += 0.5 * strain.dt * chunk.body.volume * power;
+  chunk.block.strained.stored += (after ? 1 : -1) * chunk.body.volume * stored;
 }
 
 template <int D, class T, class Components>

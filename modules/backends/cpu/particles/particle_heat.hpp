@@ -226,10 +226,8 @@ void ParticleStep<D, T, Components>::change_phases(const Chunk& chunk, Work& wor
   std::swap_ranges(kept, kept + chunk.end, temperature);
   const T* const size = sizes(chunk);
   for (int p = 0; p < chunk.count; ++p) {
-    const double lost = chunk.body.volume * (size ? size[p] : T(1)) *
-                        (static_cast<double>(before[p]) - static_cast<double>(work.scalar[p]));
-    chunk.block.dissipated += lost;
-    chunk.block.stored -= lost;
+    chunk.block.phase_change += chunk.body.volume * (size ? size[p] : T(1)) *
+                                (static_cast<double>(before[p]) - static_cast<double>(work.scalar[p]));
   }
 }
 
@@ -241,10 +239,10 @@ double ParticleStep<D, T, Components>::change_phases(const StepInfo& step) {
   for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
     if (!bodies_[body].may_melt()) continue;
     for_each_block(body, false, [&](Block<D>& block, Work& work) {
-      block.dissipated = 0;
+      block.phase_change = 0;
       for_each_chunk_of(body, block, [&](const Chunk& chunk) { change_phases(chunk, work); });
     });
-    for (const Block<D>& block : particles_[body].blocks) sum += block.dissipated;
+    for (const Block<D>& block : particles_[body].blocks) sum += block.phase_change;
   }
   return accounted_ ? sum : 0;
 }

@@ -133,8 +133,9 @@ struct Body {
   bool frozen = false;          ///< particles and domains stay as they are
   const Component* material = nullptr;
   std::int32_t (*update_material)(const void*, const mpm_material_batch*) = nullptr;
-  const BodyLoads* loads = nullptr;  ///< null where nothing acts from outside
-  bool dissipates = false;           ///< the law does, or its artificial viscosity
+  const BodyLoads* loads = nullptr;       ///< null where nothing acts from outside
+  bool dissipates = false;                ///< the law does, or its artificial viscosity
+  double Ledger::*dissipation = nullptr;  ///< the row of what the law dissipates
   ArtificialViscosity<T> viscosity{};
   const Thermal* thermal = nullptr;  ///< null where particles have no temperature
   bool warms_itself = false;         ///< a share of what it dissipates becomes heat
@@ -174,10 +175,9 @@ class ParticleStep : NamedChannels {
   /// Returns the sums of the particles when momenta are scattered with the ledger on, else zeros.
   Scattered scatter(const Pass& pass, const StepInfo& step);
   struct Gathered {
-    double kinetic_energy = 0, dissipated = 0;  ///< J, with the ledger on
-    double stress_power = 0, stored = 0;        ///< J, with the ledger on
-    double artificial = 0;                      ///< J, with the ledger on: share of what is dissipated
-    double heat = 0, heat_of_dissipation = 0;   ///< J, with temperature
+    double kinetic_energy = 0;                 ///< J, with the ledger on
+    Ledger strained;                           ///< what the strain and changes of phase enter in it
+    double heat = 0, heat_of_dissipation = 0;  ///< J, with temperature
   };
   /// What a grip gave its particles in the last gather.
   GivenToGripped given_to_gripped(std::size_t grip) const;

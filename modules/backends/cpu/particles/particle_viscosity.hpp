@@ -42,10 +42,10 @@ void ParticleStep<D, T, Components>::strain_artificially(const Chunk& chunk, Wor
   for (int p = 0; p < chunk.end; ++p) dissipated[p] += dissipation[p];
   if (!accounted_) return;
   const T* const size = sizes(chunk);
-  chunk.block.artificial += chunk.body.volume * sum_of_particles<T>(chunk.count, [&](int p) {
-                              const Lanes<T> energy = Lanes<T>::load(dissipation + p);
-                              return size ? energy * Lanes<T>::load(size + p) : energy;
-                            });
+  chunk.block.strained.artificial += chunk.body.volume * sum_of_particles<T>(chunk.count, [&](int p) {
+                                       const Lanes<T> energy = Lanes<T>::load(dissipation + p);
+                                       return size ? energy * Lanes<T>::load(size + p) : energy;
+                                     });
 }
 
 /// Replaces the speeds of the fastest waves by those that artificial viscosity asks a step to stand.

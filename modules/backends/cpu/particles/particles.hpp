@@ -38,9 +38,9 @@ struct Block {
   bool may_meet = true;                        ///< false: none of its particles reaches a node where contact may act
   ListBounds bounds;                           ///< bounds of the particles as the last gather moved them
   std::uint32_t far = 0;                       ///< number of particles whose lists leave the tile
-  double kinetic_energy = 0, dissipated = 0;   ///< partial sums of the ledger, J
-  double stress_power = 0, stored = 0;         ///< the same: work of the stresses, change of the stored energy, J
-  double artificial = 0;                       ///< share of what is dissipated that is artificial viscosity's, J
+  double kinetic_energy = 0;                   ///< partial sums of the ledger, J
+  StrainEnergies strained;                     ///< the same, of the last strain
+  double phase_change = 0;                     ///< the same: stored energy that went with a phase, J
   double scattered_energy = 0;                 ///< kinetic energy of the particles when they scatter, J
   double scattered_mass = 0;                   ///< their mass, kg
   std::array<double, D> scattered_momentum{};  ///< their momentum, kg m/s
