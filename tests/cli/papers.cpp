@@ -793,6 +793,40 @@ TEST_CASE("run-outs of grains and the front of a dam are those of the studies an
   }
 }
 
+TEST_CASE("the tubes of the studies of locking widen alike by Lame's and Hill's formulas, whatever Poisson's ratio",
+          "[papers]") {
+  constexpr double r = 0.19375, b = 0.2, widening = 9.949738e-6;
+  const double c = Tube(150e6).radius, mean = 240e6 / std::sqrt(3.0) * c * c / (b * b);
+  const auto read = [](const std::string& name) {
+    return Json::parse(slurp(root / "experiments/studies" / (name + ".json")), nullptr, true, true);
+  };
+  const auto widens = [&](double nu, double modulus) {
+    return (1 + nu) / modulus * mean * ((1 - 2 * nu) * r + b * b / r);
+  };
+  const Json tube = read("locking_tube"), study = read("locking_cylinder"), cells = read("locking_cylinder_cells");
+  const Json& steel = tube["materials"]["steel"];
+  CHECK(steel["yield_stress"] == 240e6);
+  CHECK(tube["constants"]["p"] == 150e6);
+  CHECK(widens(steel["poisson_ratio"], steel["youngs_modulus"]) == Approx(widening).epsilon(1e-6));
+  for (const Json& one : study["axes"]["nu"]["values"]) {
+    const Json& set = one["set"];
+    const double nu = set["/materials/steel/poisson_ratio"];
+    INFO(nu);
+    CHECK(1 - 2 * nu == Approx(one["value"].get<double>()).epsilon(1e-9));
+    CHECK(widens(nu, set["/materials/steel/youngs_modulus"]) == Approx(widening).epsilon(1e-6));
+  }
+  CHECK(widens(cells["set"]["/materials/steel/poisson_ratio"], cells["set"]["/materials/steel/youngs_modulus"]) ==
+        Approx(widening).epsilon(1e-6));
+  // A tube that stays elastic has A = p / 3 for radii 1 : 2.
+  CHECK(study["axes"]["tube"]["values"][0]["set"]["/constants/p"].get<double>() == Approx(3 * mean).epsilon(1e-7));
+  for (const Json* one : {&study, &cells}) {
+    CHECK(has((*one)["measure"]["widening"]["formula"].get<std::string>(), "x/9.949738e-6"));
+    CHECK(has((*one)["measure"]["error"]["formula"].get<std::string>(), "abs(x/9.949738e-6-1)"));
+    CHECK(has((*one)["measure"]["hoop"]["formula"].get<std::string>(), "x/116.917725e6"));
+  }
+  CHECK(mean * (1 + b * b / (r * r)) == Approx(116.917725e6).epsilon(1e-7));
+}
+
 TEST_CASE("bounds on the page of papers hold in the tables of its studies", "[papers][docs]") {
   for (const char* load : {"1", "2", "5"})
     for (const char* cells : {"2", "4"}) {
