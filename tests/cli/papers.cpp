@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <regex>
 #include <sstream>
 
 #include "cli/program.hpp"
@@ -104,39 +105,46 @@ struct Shock {
   double mean() const { return particle * (1 - speed * 1.5e-6 / 0.01); }
 };
 
-/// How far a cantilever of length 1 sinks at its tip and, on the mean, along its last twentieth; load P L^2 / EI = k. It is
-/// the elastica theta'' = -k cos(theta) from the tip back to the clamp, shot for theta = 0 there.
-std::array<double, 2> sag(double k) {
-  constexpr int n = 2000;
-  constexpr double d = 1.0 / n;
-  using State = std::array<double, 3>;  // theta, theta', way across the beam, from the tip
-  const auto slope = [&](const State& s) { return State{s[1], -k * std::cos(s[0]), std::sin(s[0])}; };
-  const auto along = [](State s, double by, const State& way) {
-    for (int c = 0; c < 3; ++c) s[c] += by * way[c];
-    return s;
-  };
-  std::vector<double> ways;
-  const auto clamp = [&](double angle) {
-    State s{angle, 0, 0};
-    ways.assign(1, 0);
-    for (int step = 0; step < n; ++step) {
-      const State k1 = slope(s), k2 = slope(along(s, d / 2, k1)), k3 = slope(along(s, d / 2, k2)),
-                  k4 = slope(along(s, d, k3));
-      for (int c = 0; c < 3; ++c) s[c] += d / 6 * (k1[c] + 2 * k2[c] + 2 * k3[c] + k4[c]);
-      ways.push_back(s[2]);
+/// A cantilever of length 1 under a load at its tip with P L^2 / EI = k: the elastica theta'' = -k cos(theta) from the tip back to
+/// the clamp, shot for theta = 0 there.
+struct Elastica {
+  explicit Elastica(double k) {
+    constexpr int n = 4000;
+    constexpr double d = 1.0 / n;
+    using State = std::array<double, 4>;  // theta, theta', way along and across the beam, from the tip
+    const auto slope = [&](const State& s) { return State{s[1], -k * std::cos(s[0]), std::cos(s[0]), std::sin(s[0])}; };
+    const auto along = [](State s, double by, const State& way) {
+      for (int c = 0; c < 4; ++c) s[c] += by * way[c];
+      return s;
+    };
+    std::vector<State> ways;
+    const auto clamp = [&](double at_tip) {
+      State s{at_tip, 0, 0, 0};
+      ways.assign(1, s);
+      for (int step = 0; step < n; ++step) {
+        const State k1 = slope(s), k2 = slope(along(s, d / 2, k1)), k3 = slope(along(s, d / 2, k2)),
+                    k4 = slope(along(s, d, k3));
+        for (int c = 0; c < 4; ++c) s[c] += d / 6 * (k1[c] + 2 * k2[c] + 2 * k3[c] + k4[c]);
+        ways.push_back(s);
+      }
+      return s[0];
+    };
+    double low = 0, high = pi / 2;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (clamp(middle) < 0 ? low : high) = middle;
     }
-    return s[0];
-  };
-  double low = 0, high = pi / 2;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (clamp(middle) < 0 ? low : high) = middle;
+    clamp(low);
+    angle = low, x = ways.back()[2], sag = ways.back()[3];
+    double mean = 0;
+    for (int step = 0; step < n / 20; ++step) mean += 10.0 / n * (ways[step][3] + ways[step + 1][3]);
+    mean_sag = sag - mean;
+    end_x = x - ways[n / 160][2], end_sag = sag - ways[n / 160][3];
   }
-  clamp(low);
-  double mean = 0;
-  for (int step = 0; step < n / 20; ++step) mean += 10.0 / n * (ways[step] + ways[step + 1]);
-  return {ways.back(), ways.back() - mean};
-}
+  double angle, x, sag;   ///< of the tip, rad
+  double mean_sag;        ///< of the last twentieth
+  double end_x, end_sag;  ///< of the middle of the last eightieth
+};
 
 /// Hill's tube: the radius up to which it flows, m, and at 0.19 m the hoop stress, Pa, and the displacement, m.
 struct Tube {
@@ -374,6 +382,15 @@ const std::vector<Sentence>& study_sentences() {
     all.push_back({beam,
                    "the end's reach is # % too short on 4 cells, with CPDI # %",
                    {{"gimp-4_cells_across-5: " + reach, -1}, {"cpdi-4_cells_across-5: " + reach, -1}}});
+    for (const std::string cells : {"2", "4"}) {
+      std::vector<std::string> runs;
+      for (const char* load : {"1", "2", "5", "10"}) runs.push_back(cells + "_cells_across-" + load);
+      const std::string row = "/L, " + cells + " cells | # | # | # | # |";
+      all.push_back({"cantilever_tip", "| x" + row, column("x of the tip (L)", runs)});
+      std::vector<Number> sinks = column("y of the tip (L)", runs);
+      for (Number& number : sinks) number.factor = -1;
+      all.push_back({"cantilever_tip", "| −y" + row, sinks});
+    }
     const std::vector<std::array<std::string, 2>> steels{{"E = 210 GPa, ν = 0.3", "E_210_GPa_0.3"},
                                                          {"E = 210 GPa, ν = 0.49", "E_210_GPa_0.49"},
                                                          {"E = 2100 GPa, ν = 0.49", "E_2100_GPa_0.49"}};
@@ -439,6 +456,34 @@ struct Derived {
   std::string text;
   std::vector<double> values;
 };
+
+/// What the page says of the tip of a cantilever that follows from the table of its study and from the elastica.
+std::vector<Derived> tips_of_cantilevers(const fs::path& table) {
+  std::vector<Derived> all;
+  const std::array<double, 4> loads{1, 2, 5, 10};
+  std::vector<double> turned, sunk;  // %, on the finer cells
+  for (const std::string cells : {"2", "4"}) {
+    std::vector<double> row;
+    for (const double load : loads) {
+      const std::string run = cells + "_cells_across-" + short_number(load);
+      row.push_back(
+          std::atan2(in_table(table, run + ": -F_yx of the tip"), in_table(table, run + ": F_xx of the tip")));
+      if (cells == "2") continue;
+      turned.push_back(100 * (row.back() / Elastica(load).angle - 1));
+      sunk.push_back(100 * (-in_table(table, run + ": y of the tip (L)") / Elastica(load).sag - 1));
+    }
+    all.push_back({"| angle, " + cells + " cells | # | # | # | # |", row});
+  }
+  const auto [least_turned, most_turned] = std::minmax_element(turned.begin(), turned.end());
+  const auto [least_sunk, most_sunk] = std::minmax_element(sunk.begin(), sunk.end());
+  all.push_back({"by # to # % of the angle and # to # % of the sag on 4 cells",
+                 {*least_turned, *most_turned, *least_sunk, *most_sunk}});
+  all.push_back({"and the reach, # % too short,",
+                 {100 * (1 - in_table(table, "4_cells_across-10: x of the tip (L)") / Elastica(10).x)}});
+  // The moment at the clamp is P x; the curvature of a beam of length 1 is k x.
+  all.push_back({"the outer fibres at the clamp by # %", {100 * 10 * Elastica(10).x / 40}});
+  return all;
+}
 
 /// Sentences whose numbers follow from tables of studies of grains and of the dam, and from what was measured. `table` gives
 /// the file of a study.
@@ -638,6 +683,7 @@ std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
   const Shock shock(500);
   const gas::PistonShock piston(2);
   const gas::ShockTube sod({1, 0, 1}, {0.125, 0, 0.1});
+  const std::array<Elastica, 4> beams{Elastica(1), Elastica(2), Elastica(5), Elastica(10)};
   return {
       {"a shock of # m/s, and behind it # Pa and # kg/m³", {piston.speed, piston.pressure, piston.density}},
       {"p J^γ grows by # %", {100 * (piston.pressure * std::pow(piston.density, -gas::g) - 1)}},
@@ -664,8 +710,12 @@ std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
       {"behind it the pressure is # MPa and the volume ratio #. Of", {1e-6 * solid.pressure, solid.stretch}},
       {"that came # % are stored", {100 * (1 - solid.dissipated / 3.2e6)}},
       {"Exact are # MPa, # and # m/s.", {1e-6 * solid.pressure, solid.stretch, -80 * (1 - 1.5e-3 * solid.speed)}},
-      {"its tip sinks by #, # and # L", {sag(1)[0], sag(2)[0], sag(5)[0]}},
-      {"its last twentieth on the mean by #, # and # L.", {sag(1)[1], sag(2)[1], sag(5)[1]}},
+      {"its tip sinks by #, # and # L", {Elastica(1).sag, Elastica(2).sag, Elastica(5).sag}},
+      {"its last twentieth on the mean by #, # and # L.",
+       {Elastica(1).mean_sag, Elastica(2).mean_sag, Elastica(5).mean_sag}},
+      {"| angle, the elastica's | # | # | # | # |", {beams[0].angle, beams[1].angle, beams[2].angle, beams[3].angle}},
+      {"| x/L, the elastica's | # | # | # | # |", {beams[0].x, beams[1].x, beams[2].x, beams[3].x}},
+      {"| −y/L, the elastica's | # | # | # | # |", {beams[0].sag, beams[1].sag, beams[2].sag, beams[3].sag}},
       {"at 120, 150 and 180 MPa up to #, # and # mm",
        {1000 * Tube(120e6).radius, 1000 * Tube(150e6).radius, 1000 * Tube(180e6).radius}},
       {"At # MPa it flows as a whole", {480 / std::sqrt(3.0) * std::log(2.0)}},
@@ -687,6 +737,7 @@ TEST_CASE("every number on the page of papers is read by a test or given by the 
     for (const Sentence& sentence : *list) whole.add_measured(sentence.text);
   for (const auto& [text, values] : exact_sentences()) whole.add_measured(text);
   for (const Derived& derived : derived_sentences(table_of)) whole.add_measured(derived.text);
+  for (const Derived& derived : tips_of_cantilevers(table_of("cantilever_tip"))) whole.add_measured(derived.text);
   for (const std::string& text : {volume_ratios, small_errors, fitted, whole_page, bends, flows})
     whole.add_measured(text);
   whole.add_names({"FMPM\\(4\\)",
@@ -714,6 +765,9 @@ TEST_CASE("every number on the page of papers is read by a test or given by the 
        "At P L²/EI = 1, 2 and 5", "a beam of rubber with H / L = 1/20 in plane", "sinks, on 2 and on 4 cells across",
        "| | load 1, 2 cells | 4 | load 2, 2 cells | 4 | load 5, 2 cells | 4 |",
        "comes near on 4 cells; what is left is that of a beam with H / L = 1/20", "At load 5 its sag",
+       "| P L²/EI | 1 | 2 | 5 | 10 |", "angle, 2 cells", "angle, 4 cells", "x/L, 2 cells", "x/L, 4 cells",
+       "−y/L, 2 cells", "−y/L, 4 cells", "Up to load 5 finer", "At load 10 they do not**: on 4 cells",
+       "of the sag on 4 cells", "the beam has H / L = 1/20, ν = 0.3 in plane strain (so E/(1 − ν²) in place of E)",
        "| Bisshopp & Drucker 1945 |", "| Hill 1950 |", "(R. Hill 1950, ", "Owen 2008, ", "ch. 7.5.1)",
        "radii 100 and 200 mm, Mises' yield stress 240 MPa", "With k = 240 MPa/√3", "p = 2 k (ln(c/a) + (1 − c²/b²)/2)",
        "grows over 2 ms", "the hoop stress at 190 mm", "command, at 150 MPa, ",
@@ -790,6 +844,34 @@ TEST_CASE("run-outs of grains and the front of a dam are those of the studies an
     if (has(derived.text, "within 30 %"))
       for (const double off : derived.values) CHECK(std::abs(off) < 30);
     if (has(derived.text, "| # % | # |")) CHECK((std::abs(derived.values[4]) < 8) == !has(derived.text, "4.034"));
+  }
+}
+
+TEST_CASE("what the page of papers says of a cantilever's tip is what its study says", "[papers][docs]") {
+  compare_with_page(tips_of_cantilevers(table_of("cantilever_tip")));
+}
+
+TEST_CASE("the study of a cantilever's tip compares with the elastica", "[papers]") {
+  const Json study = Json::parse(slurp(root / "experiments/papers/cantilever_tip.json"), nullptr, true, true);
+  const auto numbers_of = [&](const std::string& measure) {
+    const std::string formula = study["measure"][measure]["formula"];
+    const std::regex decimals("[0-9]+\\.[0-9]{8}");
+    std::vector<double> numbers;
+    for (std::sregex_iterator match(formula.begin(), formula.end(), decimals), end; match != end; ++match)
+      numbers.push_back(std::stod(match->str()));
+    return numbers;
+  };
+  const auto x = numbers_of("x"), y = numbers_of("y"), x_error = numbers_of("x_error"), y_error = numbers_of("y_error");
+  const auto is_among = [](double value, const std::vector<double>& numbers) {
+    return std::any_of(numbers.begin(), numbers.end(), [&](double number) { return std::abs(number - value) < 1e-8; });
+  };
+  for (const double load : {1.0, 2.0, 5.0, 10.0}) {
+    INFO(load);
+    const Elastica beam(load);
+    CHECK(is_among(beam.x - beam.end_x, x));
+    CHECK(is_among(beam.sag - beam.end_sag, y));
+    CHECK(is_among(beam.end_x, x_error));
+    CHECK(is_among(beam.end_sag, y_error));
   }
 }
 
@@ -889,7 +971,7 @@ TEST_CASE("a drop of rows of particles begins too large, as the page of papers s
 TEST_CASE("studies of papers print the tables of the page", "[papers][slow]") {
   for (const std::string study : {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids",
                                   "channel_times", "channel_grids", "plate_impact_speeds", "cantilever_loads",
-                                  "thick_cylinder_pressures", "solid_shock_viscosity"}) {
+                                  "cantilever_tip", "thick_cylinder_pressures", "solid_shock_viscosity"}) {
     INFO(study);
     const Folder folder;
     const Result result =
@@ -898,6 +980,7 @@ TEST_CASE("studies of papers print the tables of the page", "[papers][slow]") {
     CHECK(result.code == 0);
     for (const Sentence& sentence : study_sentences())
       if (sentence.from == study) compare_with_table(sentence, folder / "study/table.csv");
+    if (study == "cantilever_tip") compare_with_page(tips_of_cantilevers(folder / "study/table.csv"));
   }
 }
 
