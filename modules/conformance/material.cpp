@@ -1,4 +1,5 @@
-// Checks of materials: rest state, stress against energy, objectivity, energy balance, wave speed, admissibility.
+// Checks of materials: rest state, stress against energy, objectivity, wave speed, admissibility. Work and energy are in
+// material_energy.cpp.
 
 #include <algorithm>
 #include <cstring>
@@ -9,16 +10,6 @@
 
 namespace mpm::conformance {
 namespace {
-
-unsigned traits_of(const Plugin& plugin) {
-  return plugin.material().traits;
-}
-
-/// Whether a law has one of the traits of finite strain. With neither, its stress and energy agree to the order of the
-/// strain only.
-bool is_finite_strain(const Plugin& plugin) {
-  return traits_of(plugin) & (MPM_OBJECTIVE | MPM_HYPERELASTIC);
-}
 
 void check_rest(const Context& c) {
   MaterialBatch rest = c.batch();
@@ -213,59 +204,6 @@ void check_objective(const Context& c, const std::vector<Increments>& path, Rand
   c.findings.at_most("objective_stress", c.variant, stress, 1e-12, "|tau(QF) - Q tau Q^T| over rho c^2" + c.where);
   c.findings.at_most("objective_scalars", c.variant, scalars, 1e-12,
                      "energy, heat, wave speed under rotation" + c.where);
-}
-
-/// Stress work minus stored energy minus heat, over the work, for a straight path to `target` in `steps` within a second,
-/// so that laws of rates are strained at one rate whatever the steps. Where hardly any work is done (sand in tension)
-/// only rounding is left to compare, and `floor`, J/m^3, stands for the work.
-Worst energy_residual(const Context& c, const Increments& target, int steps, double floor) {
-  MaterialBatch batch = c.batch();
-  batch.evaluate();
-  std::array<double, full> work{}, heat{}, spent{}, start{};
-  for (int lane = 0; lane < full; ++lane) start[lane] = batch.energy(0, lane);
-  Increments increments;
-  for (int lane = 0; lane < full; ++lane) increments[lane] = scaled(target[lane], 1.0 / steps);
-  for (int k = 0; k < steps; ++k) {
-    std::array<double, full> before;
-    for (int lane = 0; lane < full; ++lane) before[lane] = contraction(batch.tau(lane), increments[lane]);
-    batch.advance(increments, 1.0 / steps);
-    for (int lane = 0; lane < full; ++lane) {
-      // The velocity gradient seen from the end of the step is L (I + dt L)^-1.
-      const Matrix3 late = increments[lane] * inverse(sum(Matrix3::identity(), increments[lane]));
-      const double done = 0.5 * (before[lane] + contraction(batch.tau(lane), late));
-      work[lane] += done;
-      spent[lane] += std::abs(done);
-      heat[lane] += batch.dissipated(0, lane);
-    }
-  }
-  Worst worst;
-  for (int lane = 0; lane < full; ++lane)
-    worst.add(std::abs(work[lane] - (batch.energy(0, lane) - start[lane]) - heat[lane]) / std::max(spent[lane], floor),
-              lane);
-  return worst;
-}
-
-/// Checks that the balance closes to the order of the time step; that of a law of small strains closes to the order of
-/// the strain only.
-void check_energy_balance(const Context& c, Random& random) {
-  if (c.variant.precision != MPM_SCALAR_DOUBLE) return;
-  const bool finite = is_finite_strain(c.plugin);
-  const double strain = finite ? 0.05 : 1e-4;
-  Increments target;
-  for (Matrix3& t : target) t = random.matrix(c.variant.dimension, strain);
-  const bool dissipates = traits_of(c.plugin) & MPM_DISSIPATES;
-  // A fluid whose volume hardly changes does next to no work: a ten-thousandth of what the modulus makes of the strain counts.
-  const double floor = 1e-4 * c.modulus * strain * strain;
-  const Worst coarse = energy_residual(c, target, 64, floor), fine = energy_residual(c, target, 256, floor);
-  const double order = std::log(coarse.value / fine.value) / std::log(4.0);
-  const std::string text =
-      "|work - stored - heat| over work, 256 steps; observed order " + std::to_string(order) + c.where;
-  c.findings.at_most("energy_balance", c.variant, fine, finite ? (dissipates ? 0.1 : 1e-4) : 10 * strain, text);
-  // The trapezoidal work of a conservative law is of second order, the return to a yield surface of first.
-  const double least = dissipates ? 0.8 : 1.8;
-  if (finite && fine.value > 1e-9)
-    c.findings.at_most("energy_balance_order", c.variant, {std::max(0.0, least - order), -1}, 0,
-                       "shortfall of the order below " + std::to_string(least) + ": " + text);
 }
 
 /// Stress after steps of increments in dt and in half of it, put together so that what is as large as the rate cancels.
@@ -565,6 +503,8 @@ void check_material(const Plugin& plugin, Findings& findings) {
       if (traits & MPM_OBJECTIVE) check_objective(c, path, random);
       findings.running("energy balance", v, c.where);
       check_energy_balance(c, random);
+      findings.running("closed paths", v, c.where);
+      check_closed_paths(c);
       findings.running("wave speed", v, c.where);
       check_wave_speed(c, random);
       findings.running("inadmissible states", v, c.where);

@@ -103,6 +103,16 @@ std::vector<Increments> random_path(Random& random, int dimension, int steps, do
 MaterialBatch after_path(const Plugin& plugin, const Variant& v, const ParameterSample& parameters,
                          const std::vector<Increments>& path);
 
+inline unsigned traits_of(const Plugin& plugin) {
+  return plugin.material().traits;
+}
+
+/// Whether a law has one of the traits of finite strain. With neither, its stress and energy agree to the order of the
+/// strain only.
+inline bool is_finite_strain(const Plugin& plugin) {
+  return traits_of(plugin) & (MPM_OBJECTIVE | MPM_HYPERELASTIC);
+}
+
 /// What a check needs of the case it runs in.
 struct Context {
   const Plugin& plugin;
@@ -115,6 +125,13 @@ struct Context {
   MaterialBatch batch() const { return {plugin, variant, parameters}; }
 };
 
+/// Checks that the balance closes to the order of the time step; that of a law of small strains closes to the order of
+/// the strain only.
+void check_energy_balance(const Context& c, Random& random);
+/// Checks the same around closed paths, some of which enclose an area in the space of F: what the work of the stress leaves
+/// unexplained after each quarter of a turn is no more than the step makes it, and a hyperelastic law that dissipates
+/// nothing is back at its stress and energy.
+void check_closed_paths(const Context& c);
 /// Runs the checks of what the material offers beyond its table, at the end of a path and where else they need.
 void check_material_extensions(const Context& c, const std::vector<Increments>& path);
 

@@ -11,6 +11,7 @@
 #include "detections/fixed_offset/fixed_offset.hpp"
 #include "detections/particle_surfaces/particle_surfaces.hpp"
 #include "faults/failed_checks.hpp"
+#include "faults/lying_metal.hpp"
 #include "filters/fmpm/fmpm.hpp"
 #include "materials/neo_hookean/neo_hookean.hpp"
 #include "materials/prony/prony.hpp"
@@ -538,6 +539,28 @@ struct StressOffEnergy : NeoHookean {
   }
 };
 
+struct ShearOffEnergy
+    : NeoHookean {  // its shear modulus grows with the volume, in the stress alone; says less of itself
+  static constexpr unsigned traits = MPM_OBJECTIVE;
+  template <int D, class S>
+  MPM_HD static Sym<D, S> kirchhoff_stress(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
+    Sym<D, S> tau = NeoHookean::kirchhoff_stress(c, state);
+    const S mean = (tau.s[0] + tau.s[1] + tau.s[2]) / real<S>(3), J = NeoHookean::volume_ratio(state);
+    for (std::size_t k = 0; k < std::size(tau.s); ++k)
+      tau.s[k] = tau.s[k] + real<S>(0.5) * (J - real<S>(1)) * (k < 3 ? S(tau.s[k] - mean) : tau.s[k]);
+    return tau;
+  }
+};
+
+struct Creeps : NeoHookean {  // grows by a millionth a step
+  template <int D, class S>
+  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
+    const S heat = NeoHookean::advance(c, L, dt, state);
+    state.deformation_gradient(0, 0) = state.deformation_gradient(0, 0) * real<S>(1 + 1e-6);
+    return heat;
+  }
+};
+
 struct SlowWave : NeoHookean {
   template <int D, class S>
   MPM_HD static S wave_speed(const Constants<scalar_of<S>>& c, const State<D, S>& state) {
@@ -855,6 +878,9 @@ TEST_CASE("wrong contact laws are caught") {
 
 TEST_CASE("wrong materials are caught") {
   check_caught(wrong_material<StressOffEnergy>, "stress_from_energy");
+  check_caught(wrong_material<ShearOffEnergy>, "closed_path");
+  check_caught(wrong_material<test::LyingMetal>, "closed_path");
+  check_caught(wrong_material<Creeps>, "closed_path_returns");
   check_caught(wrong_material<SlowWave>, "wave_speed_bounds_tangent");
   check_caught(wrong_material<SlowBranches>, "wave_speed_bounds_tangent");
   check_caught(wrong_material<SpeedWithoutDensity>, "scales_with_density");
