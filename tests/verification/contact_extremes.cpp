@@ -1,6 +1,6 @@
 // Contact at its extremes, the scenes of docs/contact.md: bodies of unlike mass and stiffness, bodies that graze one another, and
 // a rigid corner. Expected: St. Venant's impact of bars, bars at rest under their weight, flight without a force, Sneddon's
-// cone, and the balance of momentum. How near they are come to on these cells (0.66 of the error before, 0.085, 0.05, 0.01, 0.15) was
+// cone, and the balance of momentum. How near they are come to on these cells (0.66 of the error before, 0.085, 0.05, 0.01) was
 // measured, with some room.
 
 #include <cmath>
@@ -139,13 +139,13 @@ TEST_CASE("the force on a rigid cone comes to that of Sneddon", "[rigid]") {
   CHECK(before < 0.05);
 }
 
-// What the corner and the walls give is what the block gains, whatever the transfer; rubber gives the work back.
+// What the corner and the walls give is what the block gains, whatever the transfer.
 TEST_CASE("a rigid corner keeps the balance of momentum and gains no energy", "[rigid]") {
   for (const std::string backend : {"cpu", "reference"})
     for (const std::string transfer : {"apic", "flip"}) {
       INFO(backend << ", " << transfer);
       ShippedScene scene("studies/rigid_corner.json", {set("/backend", backend), set("/transfer/type", transfer)});
-      double missing = 0, impulse = 0, most_force = 0, most_energy = 0;
+      double missing = 0, impulse = 0;
       const auto each = [&] {
         const Backend& now = scene.simulation.backend();
         const Totals totals = scene.metrics.measure();
@@ -153,18 +153,13 @@ TEST_CASE("a rigid corner keeps the balance of momentum and gains no energy", "[
         for (const Reaction& reaction : now.reactions()) given += reaction.impulse[1];
         const Reaction& corner = now.reactions()[static_cast<std::size_t>(scene.experiment.support_of_rigid_body(0))];
         impulse = larger(impulse, std::abs(corner.impulse[1]));
-        most_force = larger(most_force, std::abs(corner.force[1]));
         missing = larger(missing, std::abs(totals.momentum[1] - given));
-        most_energy = larger(most_energy, totals.total_energy());
       };
-      const Totals end = scene.run(each);
+      scene.run(each);
       REQUIRE(scene.failure == "");
       CHECK(impulse > 1e4);
       CHECK(missing < 1e-12 * impulse);
-      CHECK(most_force < 1e5);
-      const double work = scene.simulation.ledger().rigid_bodies;
-      CHECK(work > 0);  // more was given than came back
-      CHECK(work < 0.15 * most_energy);
-      CHECK(end.total_energy() < 0.02 * most_energy);
+      // More was given than came back. How much, and with what force: tests/regression/rigid_corner.cpp.
+      CHECK(scene.simulation.ledger().rigid_bodies > 0);
     }
 }

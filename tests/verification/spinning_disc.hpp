@@ -1,6 +1,11 @@
 #pragma once
-// A disc that spins once a second.
+// A disc that spins once a second, and what is kept of its spin in a turn.
 
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "support/catch.hpp"
 #include "support/scene.hpp"
 
 namespace mpm::test {
@@ -15,5 +20,21 @@ inline constexpr const char* spinning_disc = R"J({
               "geometry": {"type": "ball", "centre": [0, 0], "radius": 0.5}}],
   "solver": {"time_step": "auto", "courant": 0.8, "end_time": 1}, "output": {"ledger": false},
   "compare": {"exact": {"type": "rigid_rotation", "angular_velocity": 6.283185307179586, "centre_x": 0, "centre_y": 0}}})J";
+
+/// Settings of a softer disc in steps half as long.
+inline std::vector<std::string> soft_turn(std::vector<std::string> settings) {
+  settings.push_back(set("/materials/m/youngs_modulus", "9.869604401e6"));
+  settings.push_back(set("/solver/courant", "0.4"));
+  return settings;
+}
+
+/// Prints what a turn keeps, and returns the share of the spin.
+inline double turn(const std::string& name, const std::vector<std::string>& settings) {
+  Scene scene(spinning_disc, settings);
+  const Totals start = scene.metrics.initial(), end = scene.run();
+  const double spin = end.angular_momentum[2] / start.angular_momentum[2];
+  std::printf("  %-12s %.12f %.6f %.4f\n", name.c_str(), spin, end.kinetic / start.kinetic, end.position_error_rms);
+  return spin;
+}
 
 }  // namespace mpm::test
