@@ -236,6 +236,26 @@ inline void compare_means(const Scene& reference, const Scene& cpu, double epsil
   }
 }
 
+/// All but a share of the values of bodies, for shapes that make a few particles near nodes barely reached differ by more
+/// than their scales.
+inline void compare_most(const Scene& reference, const Scene& cpu, double epsilon, double share) {
+  const double speed = 1.5, h = reference.experiment.grid.cell_size;
+  const Tolerance& allowed = parity_tolerance;
+  for (int body = 0; body < static_cast<int>(reference.experiment.bodies.size()); ++body) {
+    const BodyState expected = reference.body(body);
+    BodyState found = cpu.body(body);
+    wrap_onto(reference.experiment, expected.position, found.position);
+    INFO("body " << body << ", all but " << share << " of the values");
+    CHECK(difference_of_most(expected.position, found.position, 1.0, share) <= allowed.position * epsilon);
+    CHECK(difference_of_most(expected.velocity, found.velocity, speed, share) <= allowed.velocity * epsilon);
+    for (const auto& [name, values] : expected.transfer_state)
+      CHECK(difference_of_most(values, found.transfer_state.at(name), speed / h, share) <= allowed.transfer * epsilon);
+    for (const auto& [name, values] : expected.material_state)
+      CHECK(difference_of_most(values, found.material_state.at(name), size_of(values), share) <=
+            allowed.material * epsilon);
+  }
+}
+
 /// The scale of a field that only some scenes hold: temperatures of those in these tests are some 30 K, and pressures
 /// some share of Young's modulus.
 inline double scale_of(const std::string& field, double h) {
@@ -394,6 +414,7 @@ inline void check_parity(const Mix& mix) {
     const Totals found = cpu.run();
     REQUIRE(found.step == end.step);
     compare_states(reference, cpu, epsilon, allowed);
+    if (is_linear) compare_most(reference, cpu, epsilon, 0.1);
     compare_means(reference, cpu, epsilon, !is_linear ? 1 : mix.dimension == 2 ? 10 : 1e2);
     const Totals& start = reference.metrics.initial();
     CHECK(difference(motion_values(end, start, 1.5), motion_values(found, start, 1.5), 1.0) <=
