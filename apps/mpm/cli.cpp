@@ -165,9 +165,10 @@ void add_drive(CLI::App& verb, DriveOptions& options) {
   auto* out =
       verb.add_option("--out", options.out,
                       "folder that gets a run folder of each path: numbers, figures, report.html; with --extremes "
-                      "two figures of all that was passed through")
+                      "figures of what was passed through, of every material a map")
           ->check([](const std::string& word) { return word.empty() ? "names no folder" : ""; });
-  verb.add_flag("--replace", options.replace, "replaces whatever runs are there")->needs(out);
+  verb.add_flag("--replace", options.replace, "replaces whatever runs, and with --extremes figures, are there")
+      ->needs(out);
   verb.footer(
       "Paths:\n" + list +
       "The first slope is that of the first step: E, G, K or the modulus M of uniaxial strain at small strains "

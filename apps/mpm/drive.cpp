@@ -266,9 +266,9 @@ void refuse_material_point(const fs::path& base, const fs::path& study, const st
 int drive_material(const DriveOptions& options) {
   if (options.id == "every") {
     if (!options.extremes || !options.parameters.empty() || !options.cell_size.empty())
-      refuse_input(
-          "mpm drive every",
-          "takes --extremes, --cycles, --duration, --dimension and --out alone; other paths want one material");
+      refuse_input("mpm drive every",
+                   "takes --extremes, --cycles, --duration, --dimension, --out and --replace alone; other paths want "
+                   "one material");
     return drive_every_to_extremes(options);
   }
   const Registry registry = load_registry();

@@ -1,10 +1,11 @@
 #include "mpm/drive_extremes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <limits>
-#include <map>
 
 #include "drive/extremes.hpp"
 #include "experiment/diagnostics.hpp"
@@ -12,7 +13,6 @@
 #include "mpm/stop_on_signal.hpp"
 #include "output/run_folder.hpp"
 #include "render/plot.hpp"
-#include "support/files.hpp"
 #include "support/numbers.hpp"
 
 namespace mpm::app {
@@ -26,18 +26,40 @@ drive::ExtremeSize size_of(const DriveOptions& options) {
   return size;
 }
 
-/// Where figures go: refuses what stands in the way before anything is computed.
-void begin_folder(const DriveOptions& options, const std::vector<const char*>& names) {
+constexpr std::array suffixes{".png", ".svg", ".csv"};
+
+/// Where figures go. Refuses what stands in the way before anything is computed, and removes figures that are replaced.
+void begin_folder(const DriveOptions& options, const std::vector<std::string>& names) {
   if (options.out.empty()) return;
   const std::string out = options.out.string();
-  if (fs::exists(options.out) && !fs::is_directory(options.out))
-    refuse_input(out, "is a file; choose a folder with --out");
-  for (const char* name : names)
-    if (!options.replace && fs::exists(options.out / (name + std::string(".png"))))
-      refuse_input(out, std::string("holds ") + name + ".png already; add --replace, or choose another folder");
   std::error_code error;
+  const fs::file_status found = fs::status(options.out, error);
+  if (fs::exists(found) && !fs::is_directory(found)) refuse_input(out, "is a file; choose a folder with --out");
   fs::create_directories(options.out, error);
-  if (error) throw support::MachineError(out + " cannot be made: " + error.message());
+  if (error)
+    refuse_input(out, "cannot be made (" + error.message() + "); choose another folder, or a shorter name, with --out");
+  for (const std::string& name : names)
+    for (const char* suffix : suffixes) {
+      const fs::path figure = options.out / (name + suffix);
+      if (!fs::exists(figure, error)) continue;
+      if (!options.replace)
+        refuse_input(out, "holds " + figure.filename().string() + " already; add --replace, or choose another folder");
+      if (!fs::remove(figure, error))
+        refuse_input(figure.string(), "cannot be replaced (" + error.message() + "); choose another folder with --out");
+    }
+  const fs::path probe = options.out / ".probe";
+  if (!std::ofstream(probe).put(' ')) refuse_input(out, "cannot be written to; choose another folder with --out");
+  fs::remove(probe, error);
+}
+
+/// What to type for the same figures.
+std::string command_of(const DriveOptions& options) {
+  std::string command = "mpm drive " + options.id + " --extremes";
+  for (const std::string& parameter : options.parameters) command += " --param " + parameter;
+  if (options.duration != 1) command += " --duration " + number_text(options.duration);
+  if (options.dimension) command += " --dimension " + std::to_string(options.dimension);
+  if (!options.cell_size.empty()) command += " --cell-size " + options.cell_size;
+  return command;
 }
 
 constexpr double rounding = 1e-12;  ///< of the stiffness at rest: a stress below is zero
@@ -53,66 +75,101 @@ double stress_of(const drive::Extreme& row, const drive::Response& state) {
 }
 
 /// Two figures of one material: all that its paths pass through.
-void draw_paths(const DriveOptions& options, const std::vector<drive::Extreme>& rows, int dimension) {
-  constexpr std::size_t every = 10;  // of the steps of a path, one has a point
-  std::map<double, double> pressed, pulling, stretched, sheared;
-  for (const drive::Extreme& row : rows)
-    for (std::size_t k = every - 1; k < row.course.size(); k += every) {
-      const auto& [size, state] = row.course[k];
-      const double stress = stress_of(row, state);
-      auto& points = is_of_volume(row)                       ? stress < 0 ? pulling : pressed
-                     : row.kind == drive::ExtremeKind::shear ? sheared
-                                                             : stretched;
-      if (stress != 0) points[size] = std::abs(stress);
-    }
+void draw_paths(const DriveOptions& options, const std::vector<drive::Extreme>& rows) {
+  constexpr double apart = 0.05;  // of the logarithms of two points, at least
   const auto plot = [&](const char* title, const char* x, const char* y) {
     render::Plot figure;
-    figure.title = options.id + std::string(": ") + title;
+    figure.title = options.id + ": " + title;
     figure.x_label = x, figure.y_label = y;
     figure.log_x = figure.log_y = true;
-    figure.footnote = "mpm drive " + options.id + " --extremes" + (dimension == 2 ? ", plane strain" : "");
+    figure.footnote = command_of(options);
     return figure;
   };
-  const auto write = [&](render::Plot figure, const char* name, const auto&... parts) {
-    const auto add = [&](const char* label, const std::map<double, double>& points) {
-      render::Series series{label};
-      for (const auto& [x, value] : points) series.x.push_back(x), series.y.push_back(value);
-      if (!series.x.empty()) figure.series.push_back(series);
-    };
-    (add(parts.first, *parts.second), ...);
-    if (figure.series.empty()) return;
-    render::write_figure(figure, options.out / name);
-    std::printf("figure: %s.png\n", (options.out / name).c_str());
+  render::Plot volume = plot("pressed to a millionth, torn to a million times its volume", "volume ratio J",
+                             "pressure, tension (Pa)"),
+               shape =
+                   plot("drawn, pressed flat and sheared at its volume", "stretch, or shear", "von Mises stress (Pa)");
+  const auto add = [](render::Plot& figure, const char* label, double x, double y) {
+    auto series = std::find_if(figure.series.begin(), figure.series.end(),
+                               [&](const render::Series& other) { return other.label == label; });
+    if (series == figure.series.end()) series = figure.series.insert(series, {label});
+    if (!series->x.empty() && std::abs(std::log(x / series->x.back())) < apart) return;
+    series->x.push_back(x), series->y.push_back(y);
   };
-  write(plot("pressed to a millionth, torn to a million times its volume", "volume ratio J", "pressure, tension (Pa)"),
-        "extremes_volume", std::pair{"pressure", &pressed}, std::pair{"tension", &pulling});
-  write(plot("drawn, pressed flat and sheared at its volume", "stretch, or shear", "von Mises stress (Pa)"),
-        "extremes_shape", std::pair{"stretched", &stretched}, std::pair{"sheared", &sheared});
+  for (const drive::Extreme& row : rows)
+    for (const auto& [size, state] : row.course) {
+      const double stress = stress_of(row, state);
+      if (stress == 0) continue;
+      if (is_of_volume(row))
+        add(volume, stress < 0 ? "tension" : "pressure", size, std::abs(stress));
+      else
+        add(shape,
+            row.kind == drive::ExtremeKind::shear ? "sheared"
+            : size < 1                            ? "pressed flat"
+                                                  : "drawn",
+            size, stress);
+    }
+  for (const auto& [figure, name] : {std::pair{&volume, "extremes_volume"}, std::pair{&shape, "extremes_shape"}}) {
+    if (figure->series.empty()) {
+      std::printf("no figure %s: there is no stress anywhere\n", name);
+      continue;
+    }
+    render::write_figure(*figure, options.out / name);
+    std::printf("figure: %s.png\n", (options.out / name).c_str());
+  }
 }
 
-/// A row of each material, a column of each path: the logarithm of the stress at its end over the stiffness at rest.
-struct ExtremesMap {
-  render::HeatMap map;
-
-  ExtremesMap() {
-    map.title = "Every material at its extremes";
-    map.x_label = "in 1000 steps", map.y_label = "material";
-    map.value_label = "decimal logarithm of the stress at the end over the stiffness at rest";
-    map.x_names = {"J = 10⁻⁶: pressure", "J = 10⁶: tension", "drawn by 10⁴", "pressed to 10⁻⁴", "sheared by 10⁴"};
-    map.digits = 2, map.height = 1400;
-    map.footnote = "grey: no stress · at J = 1 the von Mises stress · mpm drive every --extremes";
+/// A row of each material, a column of each path: the logarithm of the stress at its end over the stiffness at rest. As many
+/// materials as have room for their numbers share a figure.
+class ExtremesMap {
+ public:
+  explicit ExtremesMap(const DriveOptions& options) : options_(options) {
+    map_.x_label = "in " + std::to_string(drive::ExtremeSize{}.steps) + " steps", map_.y_label = "material";
+    map_.value_label = "decimal logarithm of the stress at the end over the stiffness at rest";
+    map_.x_names = {"J = 10⁻⁶", "J = 10⁶", "drawn by 10⁴", "pressed to 10⁻⁴", "sheared by 10⁴"};
+    map_.digits = 2, map_.width = 1800, map_.height = 1200;
+    map_.footnote = "J: size of the pressure; at J = 1: von Mises stress · " + command_of(options);
   }
+
+  static std::vector<std::string> names(std::size_t materials) {
+    std::vector<std::string> all;
+    for (std::size_t k = 0; k * rows_of_a_figure < materials; ++k) all.push_back("extremes_" + std::to_string(k + 1));
+    return all;
+  }
+
   void add(const std::string& material, const std::vector<drive::Extreme>& rows) {
-    map.y_names.push_back(material);
+    map_.y_names.push_back(material);
     for (const drive::Extreme& row : rows) {
-      if (row.course.empty() && row.outcome != drive::Outcome::refused) continue;
       if (row.must_be_refused || row.name == "the same in one step" || row.name.ends_with("cycles")) continue;
       const double share = std::abs(stress_of(row, row.end)) / row.stiffness;
       const bool shown = row.outcome == drive::Outcome::right && share > 0;
-      map.values.push_back(shown ? std::log10(share) : std::numeric_limits<double>::quiet_NaN());
-      map.notes.push_back(shown ? "" : row.outcome == drive::Outcome::right ? "0" : row.outcome_text());
+      map_.values.push_back(shown ? std::log10(share) : std::numeric_limits<double>::quiet_NaN());
+      map_.notes.push_back(shown ? "" : row.outcome == drive::Outcome::right ? "none" : row.outcome_text());
     }
   }
+
+  void draw() const {
+    if (options_.out.empty()) return;
+    const std::vector<std::string> all = names(map_.y_names.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const std::size_t first = k * rows_of_a_figure, last = std::min(first + rows_of_a_figure, map_.y_names.size());
+      const auto part = [&](const auto& values, std::size_t columns) {
+        return std::decay_t<decltype(values)>(values.begin() + static_cast<std::ptrdiff_t>(first * columns),
+                                              values.begin() + static_cast<std::ptrdiff_t>(last * columns));
+      };
+      render::HeatMap map = map_;
+      map.title = "Materials at their extremes: " + map_.y_names[first] + " to " + map_.y_names[last - 1];
+      map.y_names = part(map_.y_names, 1);
+      map.values = part(map_.values, map_.x_names.size()), map.notes = part(map_.notes, map_.x_names.size());
+      render::write_figure(map, options_.out / all[k]);
+      std::printf("figure: %s.png\n", (options_.out / all[k]).c_str());
+    }
+  }
+
+ private:
+  static constexpr std::size_t rows_of_a_figure = 13;
+  const DriveOptions& options_;
+  render::HeatMap map_;
 };
 
 }  // namespace
@@ -141,7 +198,7 @@ int drive_to_extremes(const DriveOptions& options, const Component& material, in
     if (row.drift > 0) std::printf("  stress drifts by %.2g of stiffness x cycles x rounding\n", row.drift);
   }
   std::printf("The numbers are those of the last state that was taken.\n");
-  if (!options.out.empty() && !stop_requested()) draw_paths(options, rows, dimension);
+  if (!options.out.empty() && !stop_requested()) draw_paths(options, rows);
   if (!stop_requested()) return all_hold ? done : run_failed;
   std::printf("stopped by a signal before the next extreme\n");
   return interrupted;
@@ -149,9 +206,9 @@ int drive_to_extremes(const DriveOptions& options, const Component& material, in
 
 /// Prints a row of each material that is installed: what it answers at the extremes, or where it fails.
 int drive_every_to_extremes(const DriveOptions& options) {
-  begin_folder(options, {"extremes"});
-  ExtremesMap chart;
+  ExtremesMap chart(options);
   const Registry registry = load_registry();
+  begin_folder(options, ExtremesMap::names(registry.of_kind(MPM_MATERIAL).size()));
   const BenchSuite suite(registry, false);
   const StopOnSignal signals;
   const drive::ExtremeSize size = size_of(options);
@@ -190,10 +247,7 @@ int drive_every_to_extremes(const DriveOptions& options) {
     std::fflush(stdout);
     chart.add(std::string(plugin->id()), rows);
   }
-  if (!options.out.empty() && !chart.map.y_names.empty()) {
-    render::write_figure(chart.map, options.out / "extremes");
-    std::printf("figure: %s.png\n", (options.out / "extremes").c_str());
-  }
+  chart.draw();
   return worst;
 }
 

@@ -1,6 +1,7 @@
 #include "mpm/run_figures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -181,9 +182,17 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   const bool takes_back = table.find("ledger friction taken back") != nullptr;
   add_if_any("ledger friction", takes_back ? "friction that particles keep" : "of it friction", 1);
   add_if_any("ledger interface springs", "of it taken up by springs", 1);
-  add_if_any("ledger material dissipation", "material", 1);
-  for (const char* cause : {"plastic work", "viscous flow", "damage", "phase change", "artificial viscosity"})
-    add_if_any(("ledger " + std::string(cause)).c_str(), ("of it " + std::string(cause)).c_str(), 1);
+  // A cause that is all of it gives the curve its name, and is not drawn twice.
+  const std::array<std::string, 5> causes{"plastic work", "viscous flow", "damage", "phase change",
+                                          "artificial viscosity"};
+  const auto is_all = [&](const std::string& cause) {
+    return table.find("ledger " + cause) &&
+           column(table, "ledger " + cause) == column(table, "ledger material dissipation");
+  };
+  const auto only = std::find_if(causes.begin(), causes.end(), is_all);
+  add_if_any("ledger material dissipation", only == causes.end() ? "material" : only->c_str(), 1);
+  if (only == causes.end())
+    for (const std::string& cause : causes) add_if_any(("ledger " + cause).c_str(), ("of it " + cause).c_str(), 1);
   render::write_figure(plot, stem);
 }
 
