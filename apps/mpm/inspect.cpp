@@ -23,6 +23,7 @@
 #include "plan/compatibility.hpp"
 #include "plugin/extension_of.hpp"
 #include "run/start_checks.hpp"
+#include "simulation/backend.hpp"
 #include "solvers/solver.hpp"
 #include "study/run_study.hpp"
 #include "study/study.hpp"
@@ -120,6 +121,10 @@ void print(const Plugin& plugin) {
     if (d.needs & MPM_NEEDS_HALF_SIZE) std::cout << "Needs the size of the undeformed particle\n";
     if (d.needs & MPM_NEEDS_DOMAIN) std::cout << "Needs the deformed domain of the particle, which it then carries\n";
   }
+  if (d.kind == MPM_MATERIAL)
+    for (const auto& row : ledger_entries)
+      if (row.value == dissipation_of(plugin))
+        std::cout << "Dissipates by: " << row.name << " (row of the energy ledger)\n";
   std::string extensions;
   for (const KnownExtension& known : known_extensions())
     if (plugin.extension(known.id)) extensions += std::string(extensions.empty() ? "" : ", ") + known.id;

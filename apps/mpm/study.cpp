@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <span>
 
 #include "experiment/diagnostics.hpp"
 #include "experiment/units.hpp"
@@ -87,7 +88,21 @@ int code_of(const Results& results, const std::vector<std::string>& troubles) {
   return study::objections(results).empty() ? done : expectation_failed;
 }
 
+/// Warns of measures that no finished run has, as one whose place is misspelt: its columns and figures are empty.
+void warn_of_empty_measures(const Results& results) {
+  const auto has = [](const study::Measure& measure) {
+    return [&](const study::Result& result) { return result.measures.contains(measure.name); };
+  };
+  const auto is_done = [](const study::Result& result) { return result.outcome.status == study::Status::done; };
+  if (std::none_of(results.results.begin(), results.results.end(), is_done)) return;
+  for (const study::Measure& measure : std::span(results.study.measures).first(results.study.own_measures))
+    if (std::none_of(results.results.begin(), results.results.end(), has(measure)))
+      std::cerr << "warning: measure " << in_quotes(measure.name) << ": no run has a finite number at " << measure.path
+                << " of its summary.json\n";
+}
+
 void print_end(const Results& results, const fs::path& folder) {
+  warn_of_empty_measures(results);
   const auto reused = std::count_if(results.results.begin(), results.results.end(),
                                     [](const study::Result& result) { return result.outcome.reused; });
   std::cout << results.results.size() << " combinations: " << study::counted(results.results);

@@ -237,6 +237,7 @@ class StudyReader {
       if (taken) context_.problem(member.at, member.value.pointer, "this measure is always there; take another name");
       study_.measures.push_back(read_measure(member));
     }
+    study_.own_measures = study_.measures.size();
     study_.measures.insert(study_.measures.end(), built_in.begin(), built_in.end());
   }
 

@@ -92,6 +92,7 @@ struct Study {
   std::vector<Axis> axes;
   std::optional<Bisection> bisection;
   std::vector<Measure> measures;              ///< the file's, then the built-in ones
+  std::size_t own_measures = 0;               ///< how many of them are the file's
   std::map<std::string, std::string> places;  ///< "FILE:LINE:COLUMN" by override, of a bisection by its pointer
   std::string error, cost;                    ///< names of measures; `error` may be empty
   std::vector<FigureRequest> figures;

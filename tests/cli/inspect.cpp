@@ -99,6 +99,8 @@ TEST_CASE("list and describe show every plugin") {
   CHECK(listed >= 11);
 
   const std::string manual = printed({"describe", "von_mises"});
+  CHECK(has(manual, "\nDissipates by: plastic work (row of the energy ledger)\n"));
+  CHECK(!has(printed({"describe", "neo_hookean"}), "Dissipates by"));
   for (const char* part : {"von_mises (material", "Source: ", "yield_stress (Pa)", "State a particle"})
     CHECK(has(manual, part));
   CHECK(printed({"describe", "material/von_mises"}) == manual);

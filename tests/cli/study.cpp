@@ -172,6 +172,19 @@ TEST_CASE("advice repeats what the run that it names warned of") {
   CHECK(!has(call(folder, {"advise", "out", "--error", "90%"}).out, "warning:"));
 }
 
+TEST_CASE("a study warns of a measure that no run has") {
+  const Folder folder;
+  Json study = small_study();
+  study["measure"]["wrong"] = {{"value", "/energy.total/final"}, {"label", "misspelt"}};
+  write_inputs(folder, breathing(), study);
+  const Result result = run_study(folder);
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK(has(result.err,
+            "warning: measure \"wrong\": no run has a finite number at /energy.total/final of its summary.json"));
+  CHECK(!has(result.err, "measure \"loss\""));
+}
+
 TEST_CASE("refused, unstable and flagged combinations are recorded by name") {
   const Folder folder;
   Json study = small_study();
