@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "drive/extremes.hpp"
+#include "drive/results.hpp"
 #include "experiment/diagnostics.hpp"
 #include "mpm/bench_suite.hpp"
 #include "mpm/stop_on_signal.hpp"
-#include "output/run_folder.hpp"
 #include "render/plot.hpp"
 #include "support/numbers.hpp"
 

@@ -11,7 +11,6 @@ using namespace mpm::test;
 
 namespace {
 
-const std::vector<std::string> orders{"last", "first", "modified_last", "averaged"};
 const std::string coulomb = R"({"type": "coulomb", "friction": 0.2})";
 const std::string flip = R"({"type": "flip"})";
 const std::string von_mises =
