@@ -121,10 +121,8 @@ void print(const Plugin& plugin) {
     if (d.needs & MPM_NEEDS_HALF_SIZE) std::cout << "Needs the size of the undeformed particle\n";
     if (d.needs & MPM_NEEDS_DOMAIN) std::cout << "Needs the deformed domain of the particle, which it then carries\n";
   }
-  if (d.kind == MPM_MATERIAL)
-    for (const auto& row : ledger_entries)
-      if (row.value == dissipation_of(plugin))
-        std::cout << "Dissipates by: " << row.name << " (row of the energy ledger)\n";
+  if (double Ledger::*const row = d.kind == MPM_MATERIAL ? dissipation_of(plugin) : nullptr)
+    std::cout << "Dissipates by: " << name_of(row) << " (row of the energy ledger)\n";
   std::string extensions;
   for (const KnownExtension& known : known_extensions())
     if (plugin.extension(known.id)) extensions += std::string(extensions.empty() ? "" : ", ") + known.id;

@@ -1,7 +1,6 @@
 #include "mpm/run_figures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -183,8 +182,8 @@ void draw_dissipation(const Table& table, const RunLabel& label, const std::file
   add_if_any("ledger friction", takes_back ? "friction that particles keep" : "of it friction", 1);
   add_if_any("ledger interface springs", "of it taken up by springs", 1);
   // A cause that is all of it gives the curve its name, and is not drawn twice.
-  const std::array<std::string, 5> causes{"plastic work", "viscous flow", "damage", "phase change",
-                                          "artificial viscosity"};
+  std::vector<std::string> causes;
+  for (double Ledger::*const row : shares_of_dissipation) causes.emplace_back(name_of(row));
   const auto is_all = [&](const std::string& cause) {
     return table.find("ledger " + cause) &&
            column(table, "ledger " + cause) == column(table, "ledger material dissipation");

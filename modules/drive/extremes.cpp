@@ -40,7 +40,8 @@ class Extremes {
   /// Equal steps f = I + dt L, `steps` of them, that multiply the volume by `ratio` each.
   Extreme follow(std::string name, const Matrix& step, double ratio, int steps, ExtremeKind kind = {}) const {
     Extreme extreme;
-    extreme.name = std::move(name), extreme.kind = kind, extreme.stiffness = stiffness_;
+    extreme.name = std::move(name), extreme.kind = kind, extreme.steps = steps;
+    extreme.stiffness = stiffness_;
     MaterialPoint point(material_, dimension_);
     const double dt = size_.duration / steps;
     Matrix L = step;

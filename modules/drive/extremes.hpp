@@ -24,6 +24,7 @@ enum class ExtremeKind { volume, stretch, shear };
 struct Extreme {
   std::string name;
   ExtremeKind kind = ExtremeKind::volume;
+  int steps = 0;  ///< of the path; 0: cycles, and no path
   Outcome outcome = Outcome::right;
   bool must_be_refused = false;  ///< a state that no body can have
   Response end;                  ///< the last state that was taken

@@ -27,14 +27,14 @@ bool nobody_exchanges(const Experiment& experiment, const std::string& name) {
 /// Whether a row of a ledger is that of a cause by which no material dissipates.
 bool nobody_dissipates(const Experiment& experiment, const std::string& name) {
   const auto& materials = experiment.materials;
-  if (name == "phase change")
+  if (name == name_of(&Ledger::phase_change))
     return std::none_of(materials.begin(), materials.end(), [](const MaterialSpecification& material) {
       return material.thermal && material.thermal->phase_change;
     });
-  for (const auto& entry : ledger_entries)
-    if (name == entry.name && std::ranges::find(dissipation_rows, entry.value) != std::end(dissipation_rows))
+  for (double Ledger::*const row : dissipation_rows)
+    if (name == name_of(row))
       return std::none_of(materials.begin(), materials.end(), [&](const MaterialSpecification& material) {
-        return dissipation_of(*material.component.plugin) == entry.value;
+        return dissipation_of(*material.component.plugin) == row;
       });
   return false;
 }

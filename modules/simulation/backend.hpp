@@ -246,6 +246,15 @@ static_assert(sizeof(Ledger) == std::size(ledger_entries) * sizeof(double));
 
 /// Rows of what materials dissipate, in the order of mpm_dissipation_cause.
 inline constexpr double Ledger::*dissipation_rows[] = {&Ledger::plastic_work, &Ledger::viscous_flow, &Ledger::damage};
+/// The rows whose sum is material dissipation, where every law names its cause.
+inline constexpr double Ledger::*shares_of_dissipation[] = {dissipation_rows[0], dissipation_rows[1],
+                                                            dissipation_rows[2], &Ledger::phase_change,
+                                                            &Ledger::artificial_viscosity};
+inline const char* name_of(double Ledger::*row) {
+  for (const auto& entry : ledger_entries)
+    if (entry.value == row) return entry.name;
+  return "";
+}
 
 /// The row of what a material dissipates, by its extension mpm.material.dissipation; null where it names no cause.
 inline double Ledger::*dissipation_of(const Plugin& material) {

@@ -29,7 +29,7 @@ TEST_CASE("two discs: how much PIC loses and FLIP keeps in one field", "[discs]"
   for (const std::string transfer : {"pic", "flip"})
     for (const std::string shape : {"linear", "bspline_quadratic"}) {
       INFO(transfer << " " << shape);
-      Scene scene(head_on_discs, {set("/transfer/type", transfer), set("/shape/type", shape)});
+      Scene scene = head_on_discs({set("/transfer/type", transfer), set("/shape/type", shape)});
       const double closing = approach_of(scene).rate;
       const Totals start = scene.metrics.initial(), end = scene.run();
       if (transfer == "pic") {

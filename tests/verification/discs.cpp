@@ -27,7 +27,7 @@ const char* oblique = R"J({
 
 TEST_CASE("two discs: before the discs meet nothing is lost", "[discs]") {
   for (const std::string transfer : {"pic", "flip", "apic", "mls"}) {
-    Scene scene(head_on_discs, {set("/transfer/type", transfer), set("/solver/end_time", "1.3")});
+    Scene scene = head_on_discs({set("/transfer/type", transfer), set("/solver/end_time", "1.3")});
     const Totals start = scene.metrics.initial(), end = scene.run();
     INFO(transfer);
     CHECK(start.mass == Approx(2 * 125.6637).epsilon(0.01));
@@ -41,7 +41,7 @@ TEST_CASE("two discs: collision conserves momentum and symmetry and never gains 
   for (const std::string transfer : {"pic", "flip", "apic", "mls"})
     for (const std::string shape : {"linear", "bspline_quadratic"}) {
       INFO(transfer << " " << shape);
-      Scene scene(head_on_discs, {set("/transfer/type", transfer), set("/shape/type", shape)});
+      Scene scene = head_on_discs({set("/transfer/type", transfer), set("/shape/type", shape)});
       const Totals start = scene.metrics.initial();
       const double closing = approach_of(scene).rate;
       double largest = 0, nearest = 1;

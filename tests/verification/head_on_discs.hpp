@@ -4,18 +4,16 @@
 #include <cmath>
 
 #include "support/scene.hpp"
+#include "verification/colliding_discs.hpp"
 
 namespace mpm::test {
 
-inline constexpr const char* head_on_discs = R"J({
-  "title": "two discs", "dimension": 2, "precision": "double", "backend": "cpu",
-  "grid": {"cell_size": 0.025, "domain": [[0, 0], [1, 1]], "boundaries": {"all": "separate"}},
-  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "flip"},
-  "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1000, "poisson_ratio": 0.3, "density": 1000}},
-  "bodies": [
-    {"name": "lower", "material": "m", "geometry": {"type": "ball", "centre": [0.2, 0.2], "radius": 0.2}, "velocity": [0.1, 0.1]},
-    {"name": "upper", "material": "m", "geometry": {"type": "ball", "centre": [0.8, 0.8], "radius": 0.2}, "velocity": [-0.1, -0.1]}],
-  "solver": {"time_step": 0.001, "end_time": 3.5}})J";
+/// The discs of colliding_discs.hpp on quadratic B-splines, with a ledger.
+inline Scene head_on_discs(const std::vector<std::string>& settings) {
+  std::vector<std::string> all{"/shape/type=bspline_quadratic", "/output/ledger=true"};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return Scene(colliding_discs::discs, all);
+}
 
 /// The mean place and velocity of a body of equal particles.
 struct Centre {
