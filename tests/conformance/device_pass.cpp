@@ -698,19 +698,22 @@ double response_to_state(const Plugin& plugin, int D, const ParameterSample& par
 }
 
 /// How far all outputs of an advance change, over that share, where each number of the state that it starts from is
-/// turned by a small share of itself, up or down: what rounding of the strain makes of a state that grows with it, as
-/// damage does over a strain of a hundredth.
+/// turned by a small share of itself, added up over these numbers: what rounding of the strain makes, at most, of a state
+/// that grows with it, as damage does over a strain of a hundredth.
 std::vector<Column> response_to_start(const Plugin& plugin, int D, const ParameterSample& parameters,
                                       const Call& start) {
   constexpr double share = 0x1p-20;
-  std::vector<Column> there = start.out, turned = start.out;
-  Random random(20240614);
-  for (double& value : turned[0]) value *= 1 + (random.uniform(-1, 1) < 0 ? -share : share);
+  std::vector<Column> there = start.out, response;
   run_material(plugin, D, parameters, start.in[0].data(), there);
-  run_material(plugin, D, parameters, start.in[0].data(), turned);
-  for (std::size_t k = 0; k < there.size(); ++k)
-    for (std::size_t i = 0; i < there[k].size(); ++i) turned[k][i] = std::abs(turned[k][i] - there[k][i]) / share;
-  return turned;
+  for (const Column& column : there) response.emplace_back(column.size(), 0.0);
+  for (std::size_t row = 0; row < start.out[0].size(); row += particles) {  // a component of all particles
+    std::vector<Column> turned = start.out;
+    for (std::size_t lane = row; lane < row + particles; ++lane) turned[0][lane] *= 1 + share;
+    run_material(plugin, D, parameters, start.in[0].data(), turned);
+    for (std::size_t k = 0; k < there.size(); ++k)
+      for (std::size_t i = 0; i < there[k].size(); ++i) response[k][i] += std::abs(turned[k][i] - there[k][i]) / share;
+  }
+  return response;
 }
 
 // ---- the composed text, compiled and run ---------------------------------------------------------------------------
