@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "metrics/pair_normal_error.hpp"
+#include "metrics/pair_surfaces.hpp"
 #include "metrics/probes.hpp"
 #include "metrics/rigid_gap.hpp"
 #include "simulation/contact_impulse.hpp"
@@ -33,6 +33,11 @@ Vector3 place_of(const BodyState& state, std::size_t p, int dimension) {
   Vector3 x{};
   for (int c = 0; c < dimension; ++c) x[c] = state.position[p * static_cast<std::size_t>(dimension) + c];
   return x;
+}
+
+/// The size of a force while the gap is open, which acts before the surfaces meet; not a number where no gap is known.
+double early_force(double gap, const Vector3& force) {
+  return std::isnan(gap) ? gap : gap > 0 ? std::hypot(force[0], force[1], force[2]) : 0;
 }
 
 /// How many particles the backend has: fewer than were seeded where only the names of records are asked for.
@@ -170,10 +175,10 @@ void ChosenNumbers::add_pairs(Views& views, std::vector<ChosenRow>& rows) const 
   if (recorded_pairs(experiment) == 0) return;
   const RecordedUnits units = units_of(experiment);
   const int first = recorded_axes(experiment).linear;
-  const bool with_normals = experiment.output.normal_error;
-  const std::vector<PairNormalError> normals =
-      with_normals ? pair_normal_errors(views, simulation_.backend().contact_nodes(), simulation_.last_time_step())
-                   : std::vector<PairNormalError>();
+  const bool with_surfaces = experiment.output.normal_error;
+  const std::vector<PairSurfaces> surfaces =
+      with_surfaces ? pair_surfaces(views, simulation_.backend().contact_nodes(), simulation_.last_time_step())
+                    : std::vector<PairSurfaces>();
   for (int a = 0; a < experiment.field_count; ++a)
     for (int b = a + 1; b < experiment.field_count; ++b) {
       const PairRecord& pair = simulation_.backend().contact_pairs()[pair_index(a, b, experiment.field_count)];
@@ -187,26 +192,32 @@ void ChosenNumbers::add_pairs(Views& views, std::vector<ChosenRow>& rows) const 
       add("sticking nodes", "", static_cast<double>(pair.sticking));
       add("slipping nodes", "", static_cast<double>(pair.slipping));
       add("largest penetration", "m", pair.largest_penetration);
-      if (!with_normals) continue;
-      const PairNormalError& error = normals[pair_index(a, b, experiment.field_count)];
-      add("normal error", "deg", error.mean);
-      add("largest normal error", "deg", error.largest);
-      add("surface misfit", "m", error.misfit);
+      add("largest gap", "m", pair.largest_gap);
+      add.components("impulse", units.momentum, pair.impulse, first, experiment.dimension);
+      add("normal impulse", units.momentum, pair.normal_impulse);
+      add.components("tangential impulse", units.momentum, pair.tangential_impulse, first, experiment.dimension);
+      const auto& [x, y, z] = pair.unbalanced_impulse;
+      add("unbalanced impulse", units.momentum, std::hypot(x, y, z));
+      if (!with_surfaces) continue;
+      const PairSurfaces& known = surfaces[pair_index(a, b, experiment.field_count)];
+      add("normal error", "deg", known.normal_error);
+      add("largest normal error", "deg", known.largest_normal_error);
+      add("surface misfit", "m", known.misfit);
+      add("gap", "m", known.gap);
+      add("early force", units.force, early_force(known.gap, pair.force));
     }
 }
 
-/// A force while every gap is open is early: the surfaces of the particles do not reach the body yet.
 void ChosenNumbers::add_rigid_gaps(Views& views, std::vector<ChosenRow>& rows) const {
   const Experiment& experiment = simulation_.experiment();
   const Backend& backend = simulation_.backend();
   for (std::size_t k = 0; k < experiment.rigid_bodies.size(); ++k) {
     const std::string& name = experiment.rigid_bodies[k].name;
     const Reaction& reaction = backend.reactions()[static_cast<std::size_t>(experiment.support_of_rigid_body(k))];
-    const Vector3 force = reaction.force;
     const double gap = rigid_gap(views, k, backend.rigid_bodies()[k]);
     const Adder add{"rigid " + name + " ", {"rigid", name}, rows};
     add("gap", "m", gap);
-    add("early force", units_of(experiment).force, gap > 0 ? std::hypot(force[0], force[1], force[2]) : 0);
+    add("early force", units_of(experiment).force, early_force(gap, reaction.force));
   }
 }
 

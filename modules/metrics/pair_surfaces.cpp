@@ -1,12 +1,12 @@
-#include "metrics/pair_normal_error.hpp"
+#include "metrics/pair_surfaces.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "metrics/carried_body.hpp"
 #include "simulation/contact_impulse.hpp"
 #include "simulation/point_bins.hpp"
 
@@ -16,100 +16,8 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
-using Vector = Eigen::Vector3d;
-using Matrix = Eigen::Matrix3d;
-
-Vector vector(const Vector3& v) {
-  return {v[0], v[1], v[2]};
-}
-
-Vector vector_of(const std::vector<double>& values, std::size_t p, int dimension) {
-  Vector v = Vector::Zero();
-  for (int c = 0; c < dimension; ++c) v[c] = values[p * static_cast<std::size_t>(dimension) + c];
-  return v;
-}
-
-/// A piece of a body's surface as it is now.
-struct Piece {
-  Vector place, normal;
-};
-
-/// A body's geometry, moved and deformed as its particles are on the whole.
-class CarriedBody {
- public:
-  CarriedBody(const BodyView& view, const Geometry& geometry) : geometry_(geometry) {
-    const Experiment& experiment = view.experiment;
-    const int D = experiment.dimension;
-    const auto place = [&](std::size_t p) { return vector_of(view.state.position, p, D); };
-    const auto start = [&](std::size_t p) { return vector_of(view.state.initial_position, p, D); };
-    double mass = 0;
-    for (std::size_t p = 0; p < view.count; ++p) {
-      const double m = view.mass(p);
-      mass += m, now_ += m * place(p), begin_ += m * start(p);
-    }
-    now_ /= mass, begin_ /= mass;
-    Matrix moved = Matrix::Zero(), spread = Matrix::Zero();
-    for (std::size_t p = 0; p < view.count; ++p) {
-      const Vector from = start(p) - begin_;
-      moved += view.mass(p) * (place(p) - now_) * from.transpose();
-      spread += view.mass(p) * from * from.transpose();
-    }
-    if (D == 2) moved(2, 2) = spread(2, 2) = spread.trace();  // nothing moves across the plane
-    const Eigen::FullPivLU<Matrix> solver(spread);
-    if (!solver.isInvertible()) return;
-    const Matrix gradient = moved * solver.inverse();
-    if (!(gradient.determinant() > 0)) return;
-    inverse_ = gradient.inverse();
-    double squares = 0;
-    for (std::size_t p = 0; p < view.count; ++p)
-      squares += view.mass(p) * (place(p) - now_ - gradient * (start(p) - begin_)).squaredNorm();
-    misfit_ = std::sqrt(squares / mass);
-    const double h = experiment.grid.cell_size;
-    step_ = 1e-4 * h;
-    for (const SurfacePiece& piece : geometry.surface(h / 4, {experiment.grid.lower, experiment.grid.upper})) {
-      const Vector from = vector(piece.point) - begin_;
-      surface_.push_back({now_ + gradient * from, (inverse_.transpose() * vector(piece.normal)).normalized()});
-    }
-  }
-
-  /// The root mean square distance of particles from where the map takes them, m; NaN where there is no map.
-  double misfit() const { return misfit_; }
-  /// Empty where there is no map.
-  const std::vector<Piece>& surface() const { return surface_; }
-  /// How far a place is outside of the body, in metres of the body as it began.
-  double distance(const Vector& x) const { return at_start(begin_ + inverse_ * (x - now_)); }
-  /// The direction in which that grows most, a unit vector; zero where there is none.
-  Vector outward(const Vector& x) const {
-    const Vector X = begin_ + inverse_ * (x - now_);
-    Vector slope;
-    for (int c = 0; c < 3; ++c) {
-      const Vector aside = step_ * Vector::Unit(c);
-      slope[c] = at_start(X + aside) - at_start(X - aside);
-    }
-    return (inverse_.transpose() * slope).stableNormalized();
-  }
-
- private:
-  double at_start(const Vector& X) const { return geometry_.distance({X[0], X[1], X[2]}); }
-
-  const Geometry& geometry_;
-  Vector now_ = Vector::Zero(), begin_ = Vector::Zero();
-  Matrix inverse_ = Matrix::Identity();
-  double misfit_ = nothing, step_ = 0;
-  std::vector<Piece> surface_;
-};
-
-/// The bodies of each velocity field.
-using BodiesOfFields = std::vector<std::vector<CarriedBody>>;
-
-BodiesOfFields carried_bodies(Views& views) {
-  const Experiment& experiment = views.experiment();
-  BodiesOfFields fields(static_cast<std::size_t>(experiment.field_count));
-  for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body)
-    fields[static_cast<std::size_t>(experiment.bodies[body].field)].emplace_back(views.of(body),
-                                                                                 *experiment.bodies[body].geometry);
-  return fields;
-}
+using Vector = CarriedBody::Vector;
+using Piece = CarriedBody::Piece;
 
 Vector3 vector3(const Vector& v) {
   return {v[0], v[1], v[2]};
@@ -155,8 +63,12 @@ double force_of_rounding(Views& views, double dt) {
   double momentum = 0;
   for (int body = 0; body < static_cast<int>(experiment.bodies.size()); ++body) {
     const BodyView& view = views.of(body);
-    for (std::size_t p = 0; p < view.count; ++p)
-      momentum += view.mass(p) * vector_of(view.state.velocity, p, experiment.dimension).norm();
+    const auto D = static_cast<std::size_t>(experiment.dimension);
+    for (std::size_t p = 0; p < view.count; ++p) {
+      double squared = 0;
+      for (std::size_t c = 0; c < D; ++c) squared += view.state.velocity[p * D + c] * view.state.velocity[p * D + c];
+      momentum += view.mass(p) * std::sqrt(squared);
+    }
   }
   return 8 * epsilon * momentum / dt;
 }
@@ -175,10 +87,44 @@ struct LoadedNode {
   double force;  ///< N
 };
 
-PairNormalError error_of_pair(const Experiment& experiment, const std::vector<CarriedBody>& of_a,
+/// The smallest distance of two bodies, m; where they overlap, less than zero by the deepest piece of a surface.
+double gap_between(const CarriedBody& a, const CarriedBody& b) {
+  double gap = std::numeric_limits<double>::infinity();
+  Vector x = Vector::Zero();
+  const CarriedBody* of_x = nullptr;  // whose surface x is on
+  for (const auto& [body, other] : {std::pair{&a, &b}, std::pair{&b, &a}})
+    for (const Piece& piece : body->surface()) {
+      const double distance = other->distance(piece.place);
+      if (distance < gap) gap = distance, x = piece.place, of_x = body;
+    }
+  // Between the middles of pieces lies the nearest place: going from one surface to the other and back leads there.
+  constexpr int most = 200;
+  constexpr double rounding = 1e-12;
+  for (int k = 0; k < most && gap > 0; ++k) {
+    of_x = of_x == &a ? &b : &a;
+    const Vector y = of_x->place_on_surface(x);
+    const double before = gap;
+    gap = k == 0 ? (y - x).norm() : std::min(gap, (y - x).norm());
+    x = y;
+    if (k > 1 && !(gap < before * (1 - rounding))) break;
+  }
+  return gap;
+}
+
+/// The smallest gap of the bodies of two fields; NaN where one is not known.
+double smallest_gap(const std::vector<CarriedBody>& of_a, const std::vector<CarriedBody>& of_b) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (const CarriedBody& a : of_a)
+    for (const CarriedBody& b : of_b) gap = std::min(gap, gap_between(a, b));
+  return gap;
+}
+
+PairSurfaces surfaces_of_pair(const Experiment& experiment, const std::vector<CarriedBody>& of_a,
                               const std::vector<CarriedBody>& of_b, const std::vector<LoadedNode>& nodes) {
-  PairNormalError error{nothing, nothing, larger_misfit(of_a, of_b)};
-  if (std::isnan(error.misfit) || nodes.empty()) return error;
+  PairSurfaces error{nothing, nothing, larger_misfit(of_a, of_b), nothing};
+  if (std::isnan(error.misfit)) return error;
+  error.gap = smallest_gap(of_a, of_b);
+  if (nodes.empty()) return error;
   std::vector<Vector> places;
   double largest_force = 0;
   for (const LoadedNode& node : nodes)
@@ -194,17 +140,17 @@ PairNormalError error_of_pair(const Experiment& experiment, const std::vector<Ca
     sum += node.force * angle, forces += node.force;
     if (node.force >= 0.01 * largest_force) largest = std::max(largest, angle);
   }
-  error.mean = sum / forces, error.largest = largest;
+  error.normal_error = sum / forces, error.largest_normal_error = largest;
   return error;
 }
 
 }  // namespace
 
-std::vector<PairNormalError> pair_normal_errors(Views& views, const std::vector<ContactNode>& nodes, double dt) {
+std::vector<PairSurfaces> pair_surfaces(Views& views, const std::vector<ContactNode>& nodes, double dt) {
   const Experiment& experiment = views.experiment();
   const BodiesOfFields fields = carried_bodies(views);
   const double rounding = nodes.empty() ? 0 : force_of_rounding(views, dt);
-  std::vector<PairNormalError> errors;
+  std::vector<PairSurfaces> pairs;
   for (int a = 0; a < experiment.field_count; ++a)
     for (int b = a + 1; b < experiment.field_count; ++b) {
       std::vector<LoadedNode> of_pair;
@@ -216,10 +162,10 @@ std::vector<PairNormalError> pair_normal_errors(Views& views, const std::vector<
           x[c] = experiment.grid.lower[c] + experiment.grid.cell_size * node.node[static_cast<std::size_t>(c)];
         of_pair.push_back({x, vector(node.normal), force});
       }
-      errors.push_back(
-          error_of_pair(experiment, fields[static_cast<std::size_t>(a)], fields[static_cast<std::size_t>(b)], of_pair));
+      const auto &of_a = fields[static_cast<std::size_t>(a)], &of_b = fields[static_cast<std::size_t>(b)];
+      pairs.push_back(surfaces_of_pair(experiment, of_a, of_b, of_pair));
     }
-  return errors;
+  return pairs;
 }
 
 }  // namespace mpm

@@ -327,6 +327,12 @@ struct PairRecord {
   double area = 0;                             ///< m^2 (m in 2-D), of what touches in the last step
   long nodes = 0, sticking = 0, slipping = 0;  ///< last step
   double largest_penetration = 0;              ///< m, last step
+  double largest_gap = 0;                      ///< m, last step, that was open where the law acted
+
+  // These are sums since the run began, N s.
+  std::array<double, 3> impulse{}, tangential_impulse{};
+  double normal_impulse = 0;
+  std::array<double, 3> unbalanced_impulse{};  ///< what both fields gained together: rounding, but with own normals
 };
 
 /// A node where two velocity fields a < b met in the last step.

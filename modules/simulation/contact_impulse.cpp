@@ -56,18 +56,17 @@ ContactImpulse::ContactImpulse(const Experiment& experiment)
       flows_(recorded_pairs(experiment)),
       records_(flows_.size()) {}
 
-ContactImpulse::Momentum ContactImpulse::momentum_of(const Vector3& impulse, const Vector3& along, double pressing) {
-  return {impulse[0], impulse[1], impulse[2], along[0], along[1], along[2], pressing};
+ContactImpulse::Momentum ContactImpulse::momentum_of(const PairGiven& given) {
+  const Vector3 &all = given.impulse, &along = given.along, &gained = given.unbalanced;
+  return {all[0], all[1], all[2], along[0], along[1], along[2], given.pressing, gained[0], gained[1], gained[2]};
 }
 
 template <class Visit>
 void ContactImpulse::for_each_flow(const ContactGiven& given, Visit visit) {
-  visit(total_, momentum_of(given.impulse));
-  for (std::size_t k = 0; k < flows_.size(); ++k) {
-    const PairGiven& pair = given.pairs[k];
-    visit(flows_[k], momentum_of(pair.impulse, pair.along, pair.pressing));
-  }
-  for (std::size_t k = 0; k < node_flows_.size(); ++k) visit(node_flows_[k], momentum_of(given.nodes.at(k).impulse));
+  visit(total_, momentum_of({.impulse = given.impulse}));
+  for (std::size_t k = 0; k < flows_.size(); ++k) visit(flows_[k], momentum_of(given.pairs[k]));
+  for (std::size_t k = 0; k < node_flows_.size(); ++k)
+    visit(node_flows_[k], momentum_of({.impulse = given.nodes.at(k).impulse}));
 }
 
 template <class Visit>
@@ -137,12 +136,13 @@ ContactImpulse::Momentum ContactImpulse::handed_over(const Flow& flow, bool filt
 }
 
 void ContactImpulse::record_counts(const ContactGiven& given) {
+  before_step_ = records_;
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const PairGiven& pair = given.pairs[k];
-    records_[k] = {};
-    records_[k].nodes = pair.sticking + pair.slipping;
-    records_[k].sticking = pair.sticking, records_[k].slipping = pair.slipping;
-    records_[k].largest_penetration = pair.largest_penetration, records_[k].area = pair.area;
+    PairRecord& record = records_[k];
+    record.nodes = pair.sticking + pair.slipping, record.sticking = pair.sticking, record.slipping = pair.slipping;
+    record.largest_penetration = pair.largest_penetration, record.largest_gap = pair.largest_gap;
+    record.area = pair.area;
   }
   nodes_.clear();
   for (const NodeGiven& given_here : given.nodes) nodes_.push_back(given_here.node);
@@ -151,11 +151,16 @@ void ContactImpulse::record_counts(const ContactGiven& given) {
 void ContactImpulse::record_forces(bool filtered, double dt) {
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const Momentum momentum = handed_over(flows_[k], filtered);
+    const PairRecord& before = before_step_[k];
+    PairRecord& record = records_[k];
     for (std::size_t c = 0; c < 3; ++c) {
-      records_[k].force[c] = momentum[c] / dt;
-      records_[k].tangential_force[c] = (momentum[c] - momentum[3 + c]) / dt;
+      const double impulse = momentum[c], tangential = impulse - momentum[3 + c];
+      record.force[c] = impulse / dt, record.impulse[c] = before.impulse[c] + impulse;
+      record.tangential_force[c] = tangential / dt;
+      record.tangential_impulse[c] = before.tangential_impulse[c] + tangential;
+      record.unbalanced_impulse[c] = before.unbalanced_impulse[c] + momentum[7 + c];
     }
-    records_[k].normal_force = momentum[6] / dt;
+    record.normal_force = momentum[6] / dt, record.normal_impulse = before.normal_impulse + momentum[6];
   }
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     const Momentum momentum = handed_over(node_flows_[k], filtered);

@@ -41,7 +41,9 @@ struct PairGiven {
   Vector3 along{};                  ///< the parts of it along the nodes' normals, kg m/s
   double pressing = 0;              ///< sum of their sizes, positive where they push the bodies apart, kg m/s
   long sticking = 0, slipping = 0;  ///< nodes
+  Vector3 unbalanced{};             ///< what both bodies gain together, kg m/s: rounding, but with own normals
   double largest_penetration = 0;   ///< m
+  double largest_gap = 0;           ///< m, that was open where the law acted
   double area = 0;                  ///< m^2 (m in 2-D), where the fields touch
 
   /// Takes what the law did at a node; a weld acts where there is no normal too.
@@ -50,13 +52,18 @@ struct PairGiven {
     slipping += status == MPM_SLIPS;
     if (status == MPM_APART || !has_normal) return;
     largest_penetration = std::max(largest_penetration, -separation);
+    largest_gap = std::max(largest_gap, separation);
     area += area_of_node;
   }
   void add(const PairGiven& other) {
-    for (std::size_t c = 0; c < 3; ++c) impulse[c] += other.impulse[c], along[c] += other.along[c];
+    for (std::size_t c = 0; c < 3; ++c) {
+      impulse[c] += other.impulse[c], along[c] += other.along[c];
+      unbalanced[c] += other.unbalanced[c];
+    }
     pressing += other.pressing;
     sticking += other.sticking, slipping += other.slipping;
     largest_penetration = std::max(largest_penetration, other.largest_penetration);
+    largest_gap = std::max(largest_gap, other.largest_gap);
     area += other.area;
   }
 };
@@ -110,7 +117,7 @@ class ContactImpulse {
     return {total[0], total[1], total[2]};
   }
   /// Records of each recorded pair and node: where they meet after the forces, and the force by what particles take now,
-  /// over a step of dt.
+  /// over a step of dt, which is added to the impulse of the run.
   void record_counts(const ContactGiven& given);
   void record_forces(bool filtered, double dt);
   /// The records of the pairs; empty where the experiment does not ask for them. They go into checkpoints.
@@ -120,9 +127,10 @@ class ContactImpulse {
   const std::vector<ContactNode>& nodes() const { return nodes_; }
 
  private:
-  /// What the step hands on of a pair, kg m/s: its impulse, its normal part and how hard that presses (PairGiven).
-  using Momentum = std::array<double, 7>;
-  static Momentum momentum_of(const Vector3& impulse, const Vector3& along = {}, double pressing = 0);
+  /// What the step hands on of a pair, kg m/s: its impulse, its normal part, how hard that presses and what is unbalanced
+  /// (PairGiven).
+  using Momentum = std::array<double, 10>;
+  static Momentum momentum_of(const PairGiven& given);
   /// A momentum on its way through the step.
   struct Flow {
     Momentum before{}, now{}, kept{};
@@ -139,6 +147,8 @@ class ContactImpulse {
   std::vector<Flow> flows_;       ///< one a recorded pair
   std::vector<Flow> node_flows_;  ///< one a recorded node
   std::vector<PairRecord> records_;
+  std::vector<PairRecord>
+      before_step_;  ///< its impulses are those until the step under way, whose force may change yet
   std::vector<ContactNode> nodes_;
   /// Books heat and the work of rigid bodies, which is taken out of contact's own row; with -1 takes them back.
   static void book(Ledger& ledger, const ContactGiven& given, double share);

@@ -36,7 +36,40 @@ TEST_CASE("the parts of a pair's force and its area are those of the other backe
       for (std::size_t c = 0; c < 3; ++c)
         CHECK(found[k].tangential_force[c] == Approx(expected[k].tangential_force[c]).epsilon(1e-8).margin(1e-6));
       CHECK(found[k].area == Approx(expected[k].area).epsilon(1e-10));
+      CHECK(found[k].largest_gap == Approx(expected[k].largest_gap).epsilon(1e-8).margin(1e-12));
+      CHECK(found[k].normal_impulse == Approx(expected[k].normal_impulse).epsilon(1e-8).margin(1e-8));
+      for (std::size_t c = 0; c < 3; ++c) {
+        CHECK(found[k].impulse[c] == Approx(expected[k].impulse[c]).epsilon(1e-8).margin(1e-8));
+        CHECK(found[k].tangential_impulse[c] == Approx(expected[k].tangential_impulse[c]).epsilon(1e-8).margin(1e-8));
+      }
     }
+  }
+}
+
+TEST_CASE("a pair's unbalanced impulse by own normals, and the gap where a law acts, are those of the reference") {
+  for (const std::string contact :
+       {R"({"type": "coulomb", "friction": 0.2, "normal": "own_gradient"})",
+        R"({"type": "adhesion", "normal_strength": 1e9, "shear_strength": 1e9, "reach": 1})"}) {
+    INFO(contact);
+    Mix mix;
+    mix.contact = contact, mix.close = true;
+    mix.more = R"(, "output": {"contact_pairs": true})";
+    Scene reference(mix.text(), {"/backend=reference", "/precision=double"});
+    DeviceScene device(mix.text(), "double");
+    double gained = 0, gap = 0;
+    while (!reference.simulation.finished()) {
+      reference.simulation.step(), device.simulation.step();
+      const PairRecord &expected = reference.simulation.backend().contact_pairs().at(0),
+                       &found = device.simulation.backend().contact_pairs().at(0);
+      for (std::size_t c = 0; c < 3; ++c) {
+        gained = larger(gained, std::abs(expected.unbalanced_impulse[c]));
+        CHECK(found.unbalanced_impulse[c] == Approx(expected.unbalanced_impulse[c]).epsilon(1e-7).margin(1e-9));
+      }
+      gap = larger(gap, expected.largest_gap);
+      CHECK(found.largest_gap == Approx(expected.largest_gap).epsilon(1e-7).margin(1e-10));
+    }
+    CHECK((contact.find("own") == std::string::npos || gained > 1e-4));
+    CHECK((contact.find("adhesion") == std::string::npos || gap > 0));
   }
 }
 

@@ -183,6 +183,11 @@ TEST_CASE("pairs of bodies and nodes in contact are recorded alike", "[parity]")
     CHECK(std::abs(found.normal_force - expected.normal_force) <= 1e-8 * size);
     check_vectors(expected.force, found.force, size);
     check_vectors(expected.tangential_force, found.tangential_force, size);
+    CHECK(found.largest_gap == Approx(expected.largest_gap).epsilon(1e-9).margin(1e-12));
+    const double pressed = size * both.reference.simulation.time();
+    CHECK(std::abs(found.normal_impulse - expected.normal_impulse) <= 1e-8 * pressed);
+    check_vectors(expected.impulse, found.impulse, pressed);
+    check_vectors(expected.tangential_impulse, found.tangential_impulse, pressed);
   }
   std::map<std::array<int, 4>, ContactNode> nodes;
   for (const ContactNode& node : cpu.contact_nodes()) nodes[{node.node[0], node.node[1], node.a, node.b}] = node;

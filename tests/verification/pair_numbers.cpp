@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "metrics/contact_traction.hpp"
-#include "metrics/pair_normal_error.hpp"
+#include "metrics/pair_surfaces.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 #include "support/stacked_blocks.hpp"
@@ -88,6 +88,39 @@ std::string given_normals(double turn, const std::vector<std::string>& velocity)
          block("low", -0.3, 0, 0) + ", " + block("high", 0, 0.3, 0.05) +
          R"(], "solver": {"time_step": 0.001, "end_time": 0.1},
       "output": {"ledger": false, "bodies": true, "contact_pairs": true, "normal_error": true}})";
+}
+
+/// Discs of 0.2 m that fly at one another in free space, the first from below; the others rest.
+std::string three_discs(const std::string& contact) {
+  const auto disc = [](const char* name, double x, double y, const char* velocity) {
+    return R"({"name": ")" + std::string(name) + R"(", "material": "m", "geometry": {"type": "ball", "centre": [)" +
+           digits(x) + ", " + digits(y) + R"(], "radius": 0.2}, "velocity": )" + velocity + "}";
+  };
+  return R"({"dimension": 2, "grid": {"cell_size": 0.05, "domain": [[-1.2, -1], [1.2, 1]], "boundaries": {"all": "free"}},
+      "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"}, "contact": )" +
+         contact +
+         R"(, "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e5, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [)" +
+         disc("a", -0.45, -0.05, "[4, 0.3]") + ", " + disc("b", 0, 0, "[0, 0]") + ", " +
+         disc("c", 0.42, 0.05, "[0, 0]") +
+         R"(], "solver": {"time_step": 2e-4, "end_time": 0.1},
+      "output": {"ledger": false, "bodies": true, "contact_pairs": true}})";
+}
+
+/// A body that flies along x at 1 m/s at one that rests, both as rigid as can be.
+std::string flying(int dimension, const std::string& first, const std::string& second, const std::string& more = "") {
+  const bool flat = dimension == 2;
+  return R"({"dimension": )" + std::to_string(dimension) + R"(, "grid": {"cell_size": )" + (flat ? "0.05" : "0.1") +
+         R"(, "domain": )" + (flat ? "[[-1, -0.6], [1, 0.6]]" : "[[-1, -0.6, -0.6], [1, 0.6, 0.6]]") +
+         R"(, "boundaries": {"all": "free"}}, "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+      "contact": {"type": "frictionless"},
+      "materials": {"m": {"type": "neo_hookean", "youngs_modulus": 1e6, "poisson_ratio": 0.3, "density": 1000}},
+      "bodies": [{"name": "a", "material": "m", "seeding": "fitted", "geometry": )" +
+         first + R"(, "velocity": )" + (flat ? "[1, 0]" : "[1, 0, 0]") +
+         R"(}, {"name": "b", "material": "m", "seeding": "fitted", "geometry": )" + second +
+         R"(}], "solver": {"time_step": 1e-4, "end_time": 1}, "output": {"ledger": false, "bodies": true,
+      "contact_pairs": true, "normal_error": true})" +
+         more + "}";
 }
 
 }  // namespace
@@ -214,19 +247,19 @@ TEST_CASE(
     node.force = {0, -force, 0};
   }
   Views views(scene.simulation);
-  const std::vector<PairNormalError> errors = pair_normal_errors(views, nodes, 0.001);
+  const std::vector<PairSurfaces> errors = pair_surfaces(views, nodes, 0.001);
   REQUIRE(errors.size() == 1);
-  CHECK(errors[0].mean == Approx((3 * 10 + 1 * 30 + 0.02 * 50) / 4.02));
-  CHECK(errors[0].largest == Approx(30));
+  CHECK(errors[0].normal_error == Approx((3 * 10 + 1 * 30 + 0.02 * 50) / 4.02));
+  CHECK(errors[0].largest_normal_error == Approx(30));
   nodes.resize(3);
   nodes[2].force = {0, -0.04, 0};
-  CHECK(pair_normal_errors(views, nodes, 0.001)[0].largest == Approx(50));
+  CHECK(pair_surfaces(views, nodes, 0.001)[0].largest_normal_error == Approx(50));
   for (ContactNode& node : nodes) node.force[1] *= 1e-15;  // the lower block rests, and the upper one has 7.5 kg m/s
-  CHECK(std::isnan(pair_normal_errors(views, nodes, 0.001)[0].mean));
+  CHECK(std::isnan(pair_surfaces(views, nodes, 0.001)[0].normal_error));
   nodes.clear();
-  CHECK(std::isnan(pair_normal_errors(views, nodes, 0.001)[0].mean));
-  CHECK(std::isnan(pair_normal_errors(views, nodes, 0.001)[0].largest));
-  CHECK(pair_normal_errors(views, nodes, 0.001)[0].misfit == Approx(0).margin(1e-12));
+  CHECK(std::isnan(pair_surfaces(views, nodes, 0.001)[0].normal_error));
+  CHECK(std::isnan(pair_surfaces(views, nodes, 0.001)[0].largest_normal_error));
+  CHECK(pair_surfaces(views, nodes, 0.001)[0].misfit == Approx(0).margin(1e-12));
 }
 
 TEST_CASE("the normals of the widest gap under a block on a turned bed are half a degree off at most",
@@ -320,4 +353,140 @@ TEST_CASE("the forces of a pair's nodes add up to its force, for every transfer 
         }
       }
   CHECK(tried >= 60);
+}
+
+TEST_CASE("a pair's impulse is the momentum that it has changed, for every transfer, filter and update order",
+          "[pairs][impulse]") {
+  const std::vector<std::string> schemes{"", R"(/filter={"type": "fmpm", "order": 3})",
+                                         R"(/filter={"type": "xpic", "order": 3})",
+                                         R"(/solver/stress_update="modified_last")"};
+  int tried = 0;
+  for (const char* backend : {"reference", "cpu"})
+    for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER))
+      for (const std::string& scheme : schemes) {
+        INFO(backend << " " << transfer->id() << " " << scheme);
+        std::vector<std::string> settings{set("/backend", backend), set("/transfer/type", std::string(transfer->id()))};
+        if (!scheme.empty()) settings.push_back(scheme);
+        try {
+          Scene scene(three_discs(R"({"type": "coulomb", "friction": 0.3})"), settings);
+          const Numbers before = chosen(scene.metrics), now = after(scene, 400);
+          const auto gained = [&](const std::string& body, const std::string& axis) {
+            return now.at("body " + body + " momentum " + axis) - before.at("body " + body + " momentum " + axis);
+          };
+          const double size = now.at("pair a b normal impulse");
+          CHECK(size > 50);
+          CHECK(now.at("pair b c normal impulse") > 20);  // it goes on from the disc in the middle
+          for (const std::string axis : {"x", "y"}) {
+            const double ab = now.at("pair a b impulse " + axis), bc = now.at("pair b c impulse " + axis),
+                         ac = now.at("pair a c impulse " + axis);
+            CHECK(gained("a", axis) == Approx(ab + ac).margin(1e-9 * size));
+            CHECK(gained("b", axis) == Approx(bc - ab).margin(1e-9 * size));
+            CHECK(gained("c", axis) == Approx(-ac - bc).margin(1e-9 * size));
+          }
+          CHECK(now.at("pair a b unbalanced impulse") < 1e-12 * size);
+          ++tried;
+        } catch (const InputError&) {
+        }
+      }
+  CHECK(tried >= 40);
+}
+
+TEST_CASE("what normals of each body's own take from momentum is the pair's unbalanced impulse", "[pairs][impulse]") {
+  for (const char* backend : {"reference", "cpu"}) {
+    INFO(backend);
+    Scene scene(three_discs(R"({"type": "coulomb", "friction": 0.3, "normal": "own_gradient"})"),
+                {set("/backend", backend)});
+    const Numbers before = chosen(scene.metrics), now = after(scene, 80);  // the third is still far away
+    double lost = 0;
+    for (const std::string axis : {"x", "y"}) {
+      double sum = 0;
+      for (const std::string body : {"a", "b"})
+        sum += now.at("body " + body + " momentum " + axis) - before.at("body " + body + " momentum " + axis);
+      lost = std::hypot(lost, sum);
+    }
+    REQUIRE(now.at("pair b c normal impulse") == 0);
+    CHECK(lost > 1e-4 * now.at("pair a b normal impulse"));
+    CHECK(now.at("pair a b unbalanced impulse") == Approx(lost).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("the impulses of a block that slides are its weight and its friction over time", "[pairs][impulse]") {
+  // The weight grows over a tenth of a second, so that half of that is missing.
+  const double pressed = 80 * 9.81 * std::sqrt(0.75) * (0.4 - 0.05);
+  for (const char* backend : {"reference", "cpu"}) {
+    INFO(backend);
+    Scene scene(leaning_block(0, 0.3), {set("/backend", backend)});
+    while (!scene.simulation.finished()) scene.simulation.step();
+    const Numbers now = chosen(scene.metrics);
+    CHECK(now.at("pair bed block normal impulse") == Approx(pressed).epsilon(0.01));
+    CHECK(now.at("pair bed block tangential impulse x") == Approx(0.3 * pressed).epsilon(0.01));
+    CHECK(std::abs(now.at("pair bed block tangential impulse y")) < 0.01 * pressed);
+    CHECK(now.at("pair bed block impulse y") == Approx(-pressed).epsilon(0.01));
+  }
+}
+
+TEST_CASE("the gap of a pair is that of its surfaces, wherever they are nearest", "[pairs][gap]") {
+  struct Pair {
+    const char* name;
+    int dimension;
+    std::string first, second;
+    double gap;   ///< m, at the start
+    double rate;  ///< of it, at the start, 1
+  };
+  const std::string turned_square = R"({"type": "turned", "about": [0.3, 0], "angle": "45 deg", "of":
+      {"type": "box", "lower": [0.2, -0.1], "upper": [0.4, 0.1]}})";
+  const double corner = 0.3 - 0.1 * std::sqrt(2);
+  // A disc before a corner, off its axis; a square before a face that is turned by 45 degrees, which its corner is nearest to;
+  // discs; and in 3-D a ball before the edge of a box, which points at it along a diagonal.
+  const double off = std::hypot(corner + 0.1, 0.07);
+  for (const Pair& pair : {Pair{"corner", 2, R"({"type": "ball", "centre": [-0.1, 0.07], "radius": 0.12})",
+                                turned_square, off - 0.12, -(corner + 0.1) / off},
+                           Pair{"face", 2, R"({"type": "box", "lower": [-0.06, 0.12], "upper": [0.1, 0.28]})",
+                                turned_square, (corner + 0.02) / std::sqrt(2), -1 / std::sqrt(2)},
+                           Pair{"discs", 2, R"({"type": "ball", "centre": [-0.3, 0.1], "radius": 0.2})",
+                                R"({"type": "ball", "centre": [0.2, -0.1], "radius": 0.15})",
+                                std::hypot(0.5, 0.2) - 0.35, -0.5 / std::hypot(0.5, 0.2)},
+                           Pair{"edge", 3, R"({"type": "ball", "centre": [-0.4, -0.4, 0], "radius": 0.2})",
+                                R"({"type": "box", "lower": [0, 0, -0.3], "upper": [0.4, 0.4, 0.3]})",
+                                0.4 * std::sqrt(2) - 0.2, -1 / std::sqrt(2)}})
+    for (const char* backend : {"reference", "cpu"}) {
+      INFO(pair.name << ", " << backend);
+      Scene scene(flying(pair.dimension, pair.first, pair.second), {set("/backend", backend)});
+      CHECK(chosen(scene.metrics).at("pair a b gap") == Approx(pair.gap).epsilon(1e-6));
+      const Numbers now = after(scene, 10);  // a thousandth of a second, before they touch
+      CHECK(now.at("pair a b gap") == Approx(pair.gap + 0.001 * pair.rate).margin(1e-4 * 0.001 + 1e-6 * pair.gap));
+      CHECK(now.at("pair a b early force") == 0);
+    }
+  Scene inside(flying(2, R"({"type": "ball", "centre": [0, 0], "radius": 0.2})",
+                      R"({"type": "box", "lower": [0.17, -0.3], "upper": [0.5, 0.3]})"));
+  CHECK(chosen(inside.metrics).at("pair a b gap") ==
+        Approx(-0.03).margin(0.001));  // of pieces a quarter of a cell long
+}
+
+TEST_CASE("a force across an open gap is early, and a gap where the law acts is told", "[pairs][gap]") {
+  // Blocks 0.6 cells apart: without regard to their distance they feel one another at once, by surfaces not at all.
+  const std::string first = R"({"type": "box", "lower": [-0.3, -0.15], "upper": [0, 0.15]})",
+                    second = R"({"type": "box", "lower": [0.03, -0.15], "upper": [0.4, 0.15]})";
+  for (const char* backend : {"reference", "cpu"}) {
+    INFO(backend);
+    const auto push = [&](const char* detection) {
+      Scene scene(flying(2, first, second),
+                  {set("/backend", backend), set("/contact/detection", detection), R"(/contact/normal="widest_gap")"});
+      return after(scene, 5);
+    };
+    const Numbers by_approach = push("approach"), by_surfaces = push("particle_surfaces");
+    CHECK(by_approach.at("pair a b gap") == Approx(0.03 - 5e-4).margin(1e-4));
+    CHECK(by_approach.at("pair a b early force") ==
+          Approx(std::hypot(by_approach.at("pair a b force x"), by_approach.at("pair a b force y"))));
+    CHECK(by_approach.at("pair a b early force") > 1);
+    CHECK(by_surfaces.at("pair a b gap") == Approx(0.03 - 5e-4).margin(1e-7));
+    CHECK(by_surfaces.at("pair a b early force") == 0);
+    CHECK(by_surfaces.at("pair a b largest gap") == 0);
+
+    // Blocks a fifth of a cell apart that adhesion holds together.
+    Scene held(flying(2, first, R"({"type": "box", "lower": [0.01, -0.15], "upper": [0.4, 0.15]})"),
+               {set("/backend", backend), R"(/contact={"type": "adhesion", "normal_strength": 1e9,
+                   "shear_strength": 1e9, "normal": "widest_gap", "detection": "particle_surfaces"})"});
+    CHECK(after(held, 3).at("pair a b largest gap") == Approx(0.01).margin(4e-4));
+  }
 }

@@ -70,7 +70,7 @@ void DeviceBackend<T>::resolve_contact(const StepInfo& step, Recorded recorded, 
   visit_pairs([&](Arguments<T> arguments) {
     arguments.first_step = step.step == 0, arguments.notes_reached = after_forces;
     const std::size_t at = place(contact_sums);
-    join("contact", arguments, nodes(), contact_sums, at, 1);
+    join("contact", arguments, nodes(), contact_sums, at, contact_maxima);
     results_.later([this, at, given, unbalanced, after_forces](const double* sums) {
       const double* const found = sums + at;
       for (std::size_t c = 0; c < 3; ++c) (*unbalanced)[c] += found[contact_unbalanced + c];
@@ -134,10 +134,12 @@ template <class T>
 void DeviceBackend<T>::take_pair(const double* sums, ContactGiven& given, bool record) {
   PairGiven pair;
   for (std::size_t c = 0; c < 3; ++c)
-    pair.impulse[c] = sums[contact_impulse + c], pair.along[c] = sums[contact_along + c];
+    pair.impulse[c] = sums[contact_impulse + c], pair.along[c] = sums[contact_along + c],
+    pair.unbalanced[c] = sums[contact_unbalanced + c];
   pair.pressing = sums[contact_pressing];
   pair.sticking = std::lround(sums[contact_sticking]), pair.slipping = std::lround(sums[contact_slipping]);
   pair.area = sums[contact_touching], pair.largest_penetration = sums[contact_penetration];
+  pair.largest_gap = sums[contact_gap];
   for (std::size_t c = 0; c < 3; ++c) given.impulse[c] += pair.impulse[c];
   given.dissipated += sums[contact_dissipated], given.stored += sums[contact_stored];
   if (!contact_impulse_.pairs().empty()) given.pairs.push_back(pair);

@@ -384,7 +384,10 @@ void ReferenceBackend::count(const PairResult& result, std::size_t a, std::size_
   if (given.pairs.empty()) return;
   PairGiven& pair =
       given.pairs[pair_index(grid_.velocity_field_of(a), grid_.velocity_field_of(b), grid_.velocity_fields())];
-  for (int c = 0; c < 3; ++c) pair.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
+  for (int c = 0; c < 3; ++c) {
+    pair.impulse[static_cast<std::size_t>(c)] += result.impulse[c];
+    pair.unbalanced[static_cast<std::size_t>(c)] += result.impulse[c] - result.returned[c];
+  }
   const double pull = result.impulse.dot(normal);
   for (int c = 0; c < 3; ++c) pair.along[static_cast<std::size_t>(c)] += pull * normal[c];
   pair.pressing -= pull;

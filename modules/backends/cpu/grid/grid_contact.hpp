@@ -108,10 +108,14 @@ struct GridStep<D, T>::ContactBatch {
                                           mass_a[i], mass_b[i]);
     }
   }
-  /// Adds what the law did to its pair.
-  void add_to(PairGiven& pair) const {
+  /// Adds what the law did to its pair; with `own` each body has taken an impulse of its own.
+  void add_to(PairGiven& pair, bool own) const {
     for (int i = 0; i < count; ++i) {
-      for (int c = 0; c < D; ++c) pair.impulse[c] += impulse[c * block_nodes + i];
+      for (int c = 0; c < D; ++c) {
+        const double taken = impulse[c * block_nodes + i];
+        pair.impulse[c] += taken;
+        if (own) pair.unbalanced[c] += taken - impulse_of_b[c * block_nodes + i];
+      }
       add_normal_part(impulse + i, normal + i, block_nodes, D, pair.along.data(), pair.pressing);
       pair.count(status[i], separation[i], area[i], valid[i]);
     }
@@ -335,7 +339,7 @@ void GridStep<D, T>::resolve_slot(std::uint32_t slot, const StepInfo& step, Cont
       batch.set_traction(i, welds_.around(pair, grid_.coordinates_of(batch.node[i])), step.dt);
     apply_law(batch, a, b, step, sums);
     if (records_nodes(scene_.experiment, step)) note_nodes(batch, a, b, sums.nodes);
-    if (sums.pairs) batch.add_to(sums.pairs[pair]);
+    if (sums.pairs) batch.add_to(sums.pairs[pair], own_normals_);
   });
 }
 

@@ -21,8 +21,10 @@ enum : int {
   contact_slipping,
   contact_touching,     ///< area where they touch, m^2
   contact_penetration,  ///< the largest one, m
+  contact_gap,          ///< the largest one that was open where the law acted, m
   contact_sums
 };
+constexpr int contact_maxima = 2;  ///< of these sums, the last ones are not added up: the largest of all nodes counts
 
 /// What contact looks at of one velocity field at a node.
 template <class Scene, class T = typename Scene::Scalar>
@@ -271,7 +273,7 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
   using T = typename Scene::Scalar;
   using N = typename Scene::Node;
   constexpr int D = Scene::dimension;
-  sum_over<contact_sums, 1>(team, a, a.node_count, [&](int node, double* sums) {
+  sum_over<contact_sums, contact_maxima>(team, a, a.node_count, [&](int node, double* sums) {
     const int nodes = a.node_count;
     const bool weld = Scene::bypasses_detection;
     if constexpr (Scene::notes_contact)
@@ -330,6 +332,7 @@ MPM_HD void contact(const Team& team, const Arguments<typename Scene::Scalar>& a
     if (!geometry.valid) return;
     sums[contact_touching] += pair.area;
     sums[contact_penetration] = max(0.0, -double(pair.separation));
+    sums[contact_gap] = max(0.0, double(pair.separation));
   });
 }
 

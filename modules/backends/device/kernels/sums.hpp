@@ -8,7 +8,7 @@
 namespace mpm::device {
 
 /// The lanes of a reduction that shared memory has room for, and the values of one.
-inline constexpr int largest_team = 256, most_sums = 16;
+inline constexpr int largest_team = 256, most_sums = 17;
 
 /// The room in shared memory for `count` values a lane.
 template <class Scene, int count>
@@ -58,6 +58,7 @@ MPM_HD void join_lanes(const Team& team, double* of_lane, int count, int maxima,
 /// that start from zero.
 template <int Count, int Maxima = 0, class Join = Adding, class T, class Body>
 MPM_HD void sum_over(const Team& team, const Arguments<T>& a, int count, Body body) {
+  static_assert(Count <= most_sums, "partial_sums and add_teams have room for most_sums values");
   double* const of_lane = team.template shared<double>();
   team.for_each_lane([&](int lane) {
     double values[Count] = {};
