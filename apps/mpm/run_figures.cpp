@@ -220,6 +220,39 @@ void draw_contact(const Table& table, const RunLabel& label, const std::filesyst
   render::write_figure(nodes, stem.parent_path() / "contact_nodes");
 }
 
+/// The size of a vector whose components are columns.
+std::vector<double> size_of(const Table& table, const std::string& name) {
+  std::vector<double> squares(table.rows());
+  for (const char* axis : {" x", " y", " z"})
+    if (table.find(name + axis)) {
+      const std::vector<double> component = column(table, name + axis);
+      for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += component[i] * component[i];
+    }
+  for (double& value : squares) value = std::sqrt(value);
+  return squares;
+}
+
+/// Draws the normal force of every pair that has met and the size of the tangential one, and the same of impulses.
+void draw_pairs(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
+  const std::string start = "pair ";
+  for (const std::string quantity : {"force", "impulse"}) {
+    const std::string normal = " normal " + quantity, tangential = " tangential " + quantity;
+    Plot plot;
+    for (const std::string& name : names_without_units(table)) {
+      if (!name.starts_with(start) || !name.ends_with(normal)) continue;
+      if (plot.title.empty())
+        plot = plot_of(table, label,
+                       (quantity == "force" ? "Contact force of pairs: " : "Contact impulse of pairs: ") + label.title,
+                       quantity == "force" ? "force F" : "impulse J", name);
+      const std::string pair = name.substr(0, name.size() - normal.size()), bodies = pair.substr(start.size());
+      if (largest_of(column(table, name)) == 0 && !plot.series.empty()) continue;
+      add(plot, table, name, bodies + ", normal");
+      plot.series.push_back({bodies + ", tangential", column(table, "time"), size_of(table, pair + tangential)});
+    }
+    render::write_figure(plot, quantity == "force" ? stem : stem.parent_path() / "contact_pair_impulses");
+  }
+}
+
 /// Draws the components of forces and moments of every support, but for those that are zero all along.
 void draw_reactions(const Table& table, const RunLabel& label, const std::filesystem::path& stem) {
   const std::string start = "reaction ", moment = " moment ";
@@ -279,6 +312,7 @@ constexpr FigureKind kinds[] = {
     {"dissipation", "ledger residual", "set /output/ledger to true", draw_dissipation},
     {"momentum", "momentum y", "", draw_momentum},
     {"contact", "contact nodes", "give the experiment a \"contact\"", draw_contact},
+    {"contact_pairs", "pair ", "set /output/contact_pairs to true", draw_pairs},
     {"reactions", "reaction ", "name supports in /output/reactions", draw_reactions},
     {"volume_ratio", "smallest volume ratio", "", draw_volume},
     {"error", "position error rms", "name an exact solution in /compare/exact", draw_error},

@@ -31,9 +31,10 @@ std::string caption_of(const fs::path& path) {
 }
 
 /// The order of figures: what a reader asks first comes first; figures of other names follow as people count.
-constexpr std::array<std::string_view, 13> reading_order{
-    "energy", "dissipation", "contact",   "contact_nodes", "reactions", "reaction_moments", "error",
-    "ledger", "heat",        "heat_held", "volume_ratio",  "momentum",  "angular_momentum"};
+constexpr std::array<std::string_view, 15> reading_order{
+    "energy",        "dissipation", "contact",          "contact_pairs", "contact_pair_impulses",
+    "contact_nodes", "reactions",   "reaction_moments", "error",         "ledger",
+    "heat",          "heat_held",   "volume_ratio",     "momentum",      "angular_momentum"};
 
 std::size_t place_of(const fs::path& figure) {
   return static_cast<std::size_t>(std::find(reading_order.begin(), reading_order.end(), figure.stem().string()) -

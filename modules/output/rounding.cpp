@@ -68,7 +68,8 @@ RoundingRule::RoundingRule(const Run& run) : figures_(run.folder / "figures") {
   for (const char* stem : {"energy", "dissipation", "ledger"})
     sizes_[stem] = {energy, "the largest kinetic, strain or gravitational energy"};
   sizes_["contact"] = {momentum / time, "Σ m |v| over the simulated time"};
-  sizes_["reactions"] = sizes_["contact"];
+  sizes_["reactions"] = sizes_["contact_pairs"] = sizes_["contact"];
+  sizes_["contact_pair_impulses"] = sizes_["momentum"];
   sizes_["contact_nodes"] = {1, "one node"};
   sizes_["error"] = {spin / momentum, "the mean distance from the origin"};
   sizes_["volume_ratio"] = {1, "one"};

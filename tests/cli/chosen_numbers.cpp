@@ -1,5 +1,8 @@
 // Bodies, groups, probes, pairs and figures of columns as `mpm run` records them and `mpm check` checks them.
 
+#include <map>
+#include <sstream>
+
 #include "cli/program.hpp"
 #include "support/csv.hpp"
 
@@ -97,6 +100,41 @@ TEST_CASE("what is asked for has columns, a place in the summary, figures and fi
   INFO(drawn.err);
   CHECK(drawn.code == 0);
   CHECK(fs::is_regular_file(folder / "run/figures/both.png"));
+}
+
+TEST_CASE("the figures of pairs show the normal force, the size of the tangential one, and their impulses") {
+  const Folder folder;
+  Json scene = asking();
+  scene["figures"] = {"contact_pairs"};
+  REQUIRE(run_scene(folder, scene).code == 0);
+  const auto table = metrics_of(folder / "run");
+  for (const auto& [file, quantity] :
+       {std::pair{"contact_pairs", "force"}, std::pair{"contact_pair_impulses", "impulse"}}) {
+    INFO(file);
+    std::istringstream drawn(slurp(folder / "run/figures" / (std::string(file) + ".csv")));
+    std::map<std::string, std::vector<double>> curves;
+    for (std::string line; std::getline(drawn, line);)
+      if (line.starts_with('"'))  // "ball other, normal",computed,time,value,,
+        curves[line.substr(1, line.find('"', 1) - 1)].push_back(
+            std::stod(line.substr(line.find(',', line.find(",computed,") + 10) + 1)));
+    const auto named = [&](const std::string& part, const std::string& axis = "") {
+      return *table.find("pair ball other " + part + quantity + axis);
+    };
+    REQUIRE(curves.size() == 2);
+    const std::vector<double> normal = named("normal "), x = named("tangential ", " x"), y = named("tangential ", " y");
+    CHECK(*std::max_element(normal.begin(), normal.end()) > 0);
+    REQUIRE(curves["ball other, normal"].size() == table.rows());
+    for (std::size_t k = 0; k < table.rows(); ++k) {
+      CHECK(curves["ball other, normal"][k] == Approx(normal[k]));
+      CHECK(curves["ball other, tangential"][k] == Approx(std::hypot(x[k], y[k])));
+    }
+    CHECK(fs::is_regular_file(folder / "run/figures" / (std::string(file) + ".png")));
+    CHECK(has(slurp(folder / "run/report.html"), file));
+  }
+  scene["output"].erase("contact_pairs"), scene["output"].erase("normal_error");
+  const std::string said = refusal(scene);
+  INFO(said);
+  CHECK(has(said, R"(figure "contact_pairs" needs "pair ", which the run does not record)"));
 }
 
 TEST_CASE("nothing of it is there unless it is asked for, and asking changes no other number") {
