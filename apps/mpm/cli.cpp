@@ -452,6 +452,16 @@ int run_command_line(int argc, char** argv) {
   figure_verb->callback(
       [&] { code = guarded([&] { return figure(runs, specification, figure_out); }, "nothing was drawn"); });
 
+  std::filesystem::path film_run;
+  std::string format = "mp4";
+  auto* film_verb =
+      app.add_subcommand("film", "join the frames of a recorded run to a film, film.FORMAT in its folder");
+  film_verb->add_option("RUN", film_run, "run folder")->required();
+  film_verb->add_option("--format", format, "webp is an animated picture, for pages")
+      ->check(CLI::IsMember({"mp4", "webm", "webp"}))
+      ->capture_default_str();
+  film_verb->callback([&] { code = guarded([&] { return film(film_run, format); }, "no film was made"); });
+
   DriveOptions drive_options;
   drive_options.command = options.command;
   auto* drive_verb = app.add_subcommand(

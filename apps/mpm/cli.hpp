@@ -128,5 +128,9 @@ int advise(const AdviseOptions& options);
 int compare(const CompareOptions& options);
 int figure(const std::vector<std::filesystem::path>& runs, const std::filesystem::path& specification,
            const std::filesystem::path& out);
+/// Joins the frames of a recorded run to RUN/film.FORMAT; exit code 5 without ffmpeg. Throws InputError when the run has
+/// fewer than two frames, FolderRefused when there is no run or another program writes it, and support::MachineError
+/// with ffmpeg's last lines when it fails.
+int film(const std::filesystem::path& run, const std::string& format);
 
 }  // namespace mpm::app

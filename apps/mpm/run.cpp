@@ -266,12 +266,14 @@ output::RunFolder open_to_resume(const std::filesystem::path& place) {
   return output::RunFolder::open(place);
 }
 
-/// Goes back to the newest checkpoint; the folder then no longer says how the run ended before.
+/// Goes back to the newest checkpoint; the folder then no longer says, nor shows in a film, how the run ended before.
 EarlierParts resume(Simulation& simulation, Recorder& recorder, const output::RunFolder& folder,
                     const RunOptions& options, int threads) {
   EarlierParts earlier = restore_newest(simulation, recorder, folder, identity_of(simulation.experiment()));
   folder.write_json("manifest.json", resumed_manifest(folder, options, threads, simulation.steps()));
-  for (const char* name : {"summary.json", "report.html"}) std::filesystem::remove(folder.root() / name);
+  // The film goes as well, because the rest of the run may be told to make one of another format, or none.
+  for (const char* name : {"summary.json", "report.html", "film.mp4", "film.webm", "film.webp"})
+    std::filesystem::remove(folder.root() / name);
   std::cerr << "resumed from step " << simulation.steps() << ", t = " << number_text(simulation.time()) << " s\n";
   return earlier;
 }

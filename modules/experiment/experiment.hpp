@@ -298,13 +298,13 @@ struct OutputSpecification {
   int frames = 0;                   ///< pictures over the run, first and last included
   std::string colour_by = "speed";  ///< attribute that colours the frames
   bool vtk = false;                 ///< a .vtu beside each frame
-  bool film = false;
-  std::vector<int> reactions;      ///< supports whose reaction is recorded
-  bool ledger = true;              ///< the energy ledger
-  int ledger_every = 1;            ///< steps between its entries, each counted that many times
-  double checkpoint_seconds = 60;  ///< seconds of the wall clock between checkpoints; 0: none by the clock
-  long checkpoint_steps = 0;       ///< steps between checkpoints; 0: none by steps
-  std::vector<int> bodies;         ///< bodies whose numbers have columns of their own
+  std::string film;                 ///< format of the film, which is its ending too; "" for none
+  std::vector<int> reactions;       ///< supports whose reaction is recorded
+  bool ledger = true;               ///< the energy ledger
+  int ledger_every = 1;             ///< steps between its entries, each counted that many times
+  double checkpoint_seconds = 60;   ///< seconds of the wall clock between checkpoints; 0: none by the clock
+  long checkpoint_steps = 0;        ///< steps between checkpoints; 0: none by steps
+  std::vector<int> bodies;          ///< bodies whose numbers have columns of their own
   std::vector<GroupSpecification> groups;
   std::vector<ProbeSpecification> probes;
   bool contact_pairs = false;  ///< contact has columns for each pair of fields

@@ -107,6 +107,7 @@ std::string describe_expected(const ParameterSpec& spec) {
     case ParameterType::boolean:
       return "true or false";
     case ParameterType::choice:
+      if (spec.may_be_boolean) return "true, false or one of " + quoted_list(spec.choices);
       return spec.choices.size() == 1 ? in_quotes(spec.choices[0]) : "one of " + quoted_list(spec.choices);
     case ParameterType::string:
       return "a string";
@@ -301,6 +302,11 @@ void Fields::report_range(const ParameterSpec& spec, const Node& node, double va
 }
 
 bool Fields::read_text(const ParameterSpec& spec, const Node& node, Value& value) {
+  if (spec.may_be_boolean && node.type == Node::Type::boolean) {
+    value.number = node.boolean;
+    value.resolved = node.boolean;
+    return true;
+  }
   if (node.type != Node::Type::string) return wrong_type(spec, node);
   value.text = node.text;
   value.resolved = node.text;

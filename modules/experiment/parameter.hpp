@@ -26,7 +26,7 @@ enum class ParameterType {
   number,  ///< with `unit`: also a string such as "0.5 mm"
   integer,
   boolean,
-  choice,  ///< a string out of `choices`
+  choice,  ///< a string out of `choices`; or `or_boolean`
   string,
   vector,             ///< as many numbers as the experiment has dimensions
   expression,         ///< a number, a number with a unit, or a formula
@@ -51,13 +51,13 @@ struct ParameterSpec {
   double maximum = std::numeric_limits<double>::infinity();
   bool above_minimum = false, below_maximum = false;  ///< the bound itself is excluded
   std::vector<std::string> choices;
-  std::string word;                                  ///< a number may also be this word ("auto")
-  std::string variables;                             ///< letters that an expression may use
-  bool may_leave_free = false;                       ///< components of an expression vector may be null
-  bool may_be_boolean = false;                       ///< names may be true (all) or false (none)
-  bool may_be_null = false;                          ///< null says "none", and is kept
-  bool unlisted = false;                             ///< read to be refused by name: no message offers it
-  int components = 0;                                ///< components of a vector; 0: as the dimension of the experiment
+  std::string word;             ///< a number may also be this word ("auto")
+  std::string variables;        ///< letters that an expression may use
+  bool may_leave_free = false;  ///< components of an expression vector may be null
+  bool may_be_boolean = false;  ///< names may be true (all) or false (none), a choice true or false
+  bool may_be_null = false;     ///< null says "none", and is kept
+  bool unlisted = false;        ///< read to be refused by name: no message offers it
+  int components = 0;           ///< components of a vector; 0: as the dimension of the experiment
   std::size_t least_items = 0, most_items = 100000;  ///< number of points
   std::string definition;                            ///< definition of a nested key
   std::shared_ptr<const Section> table;              ///< keys of a nested key, where one place alone has them

@@ -204,7 +204,8 @@ void ExperimentReader::read_output(const Node* node) {
   output.frames = fields.integer("frames");
   output.colour_by = fields.text("colour_by");
   output.vtk = fields.boolean("vtk");
-  output.film = fields.boolean("film");
+  output.film = fields.text("film");
+  if (output.film.empty() && fields.boolean("film")) output.film = "mp4";
   output.ledger = fields.boolean("ledger");
   output.ledger_every = fields.integer("ledger_every");
   output.checkpoint_seconds = fields.number("checkpoint_every");
@@ -220,7 +221,7 @@ void ExperimentReader::read_output(const Node* node) {
     problem(fields.place("ledger_every"), "there is no ledger to make entries in: set \"ledger\" to true");
   read_reactions(fields);
   if (!fields.valid("frames")) return;
-  if (output.film && output.frames < 2) problem(fields.place("film"), "a film needs \"frames\" of at least 2");
+  if (!output.film.empty() && output.frames < 2) problem(fields.place("film"), "a film needs \"frames\" of at least 2");
   if (output.vtk && output.frames < 1) problem(fields.place("vtk"), "VTK files are written at frames: set \"frames\"");
 }
 

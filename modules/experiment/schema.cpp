@@ -67,6 +67,7 @@ Json value_schema(const ParameterSpec& spec) {
       return {{"type", "boolean"}};
     case ParameterType::choice:
     case ParameterType::string:
+      if (spec.may_be_boolean) return {{"anyOf", Json::array({{{"type", "boolean"}}, strings_of(spec)})}};
       return strings_of(spec);
     case ParameterType::vector:
       return vector_of(spec, quantity(number, {}));

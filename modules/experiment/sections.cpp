@@ -486,7 +486,10 @@ Section output_section(const ReadOptions& options) {
           colour,
           parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
           particle_output_parameter(),
-          parameter("film", Type::boolean, "", "Join the frames to a film.").standard(false),
+          parameter("film", Type::choice, "", "Join the frames to a film of this format; true: mp4.")
+              .of({"mp4", "webm", "webp"})
+              .or_boolean()
+              .standard(false),
           parameter("reactions", Type::names, "",
                     "Walls, boxes of nodes, grips and rigid bodies whose force on the material is recorded; true: all "
                     "that hold any.")

@@ -62,22 +62,62 @@ void link_numbered(const std::vector<fs::path>& frames, const fs::path& folder) 
   }
 }
 
+/// How ffmpeg is told to write the films of one ending.
+struct Format {
+  const char* ending;
+  const char* encoder;
+  const char* filter;
+  std::vector<const char*> settings;
+};
+
+// Players want even sizes and 4:2:0 colour; a white rim of one pixel does less harm than rescaling.
+constexpr const char* even_sizes = "pad=ceil(iw/2)*2:ceil(ih/2)*2:0:0:white";
+// A page shows it while it loads and over and over: it is small, and rests for a second on what came of the scene.
+constexpr const char* page_size = "scale='min(640,iw)':-1:flags=lanczos,tpad=stop_mode=clone:stop_duration=1";
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> all{
+      {".mp4",
+       "libx264",
+       even_sizes,
+       {"-pix_fmt", "yuv420p", "-crf", "18", "-preset", "medium", "-movflags", "+faststart"}},
+      {".webm", "libvpx-vp9", even_sizes, {"-pix_fmt", "yuv420p", "-crf", "30", "-b:v", "0"}},
+      // Blocks that stay are left transparent. The other encoder, libwebp_anim, lets slow changes pile up in them.
+      {".webp", "libwebp", page_size, {"-pix_fmt", "yuva420p", "-quality", "60", "-cr_threshold", "1", "-loop", "0"}},
+  };
+  return all;
+}
+
+/// The endings of all formats, with `last` before the last one.
+std::string list_of_endings(const char* last) {
+  std::string text;
+  for (const Format& format : formats()) {
+    const bool is_last = &format == &formats().back();
+    text += (text.empty() ? "" : is_last ? last : ", ") + std::string(format.ending);
+  }
+  return text;
+}
+
+/// Throws std::invalid_argument for an ending that no format has.
+const Format& format_of(const fs::path& target) {
+  for (const Format& format : formats())
+    if (target.extension() == format.ending) return format;
+  throw std::invalid_argument("a film ends in " + list_of_endings(" or ") + ", not '" + target.filename().string() +
+                              "'");
+}
+
 std::vector<std::string> arguments_for(const fs::path& ffmpeg, const fs::path& target, int frames_per_second) {
   std::vector<std::string> arguments = {ffmpeg.string()};
-  const auto add = [&](std::initializer_list<const char*> more) {
+  const auto add = [&](const std::vector<const char*>& more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
   };
+  const Format& format = format_of(target);
   // A damaged frame must stop it (-xerror): a film that silently skips one would lie.
   add({"-nostdin", "-hide_banner", "-loglevel", "error", "-xerror", "-y", "-framerate"});
   arguments.push_back(std::to_string(frames_per_second));
   add({"-i", "%08d.png"});
-  // Players want even sizes and 4:2:0 colour; a white rim of one pixel does less harm than rescaling.
-  add({"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:0:0:white", "-pix_fmt", "yuv420p"});
-  if (target.extension() == ".mp4") {
-    add({"-c:v", "libx264", "-crf", "18", "-preset", "medium", "-movflags", "+faststart"});
-  } else {
-    add({"-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0"});
-  }
+  add({"-vf", format.filter, "-c:v", format.encoder});
+  add(format.settings);
   arguments.push_back(target.string());
   return arguments;
 }
@@ -126,11 +166,13 @@ std::string last_lines(const fs::path& log, int count) {
   return start == std::string::npos || start == 0 ? text : text.substr(start + 1);
 }
 
-void check_request(const fs::path& target, int frames_per_second) {
-  if (target.extension() != ".mp4" && target.extension() != ".webm") {
-    throw std::invalid_argument("a film ends in .mp4 or .webm, not '" + target.filename().string() + "'");
-  }
-  if (frames_per_second < 1) throw std::invalid_argument("a film needs at least one frame per second");
+/// What is to be done about what ffmpeg says.
+std::string remedy(const std::string& said, const fs::path& target) {
+  const std::string formats = list_of_endings(" and ");
+  if (said.find("Unknown encoder") != std::string::npos)
+    return "the frames are kept; this ffmpeg was built without the encoder " + std::string(format_of(target).encoder) +
+           ": take another of " + formats + ", or an ffmpeg that has it";
+  return "the frames are kept; replace the damaged one it names, or try another of " + formats;
 }
 
 void make_film(const fs::path& ffmpeg, const std::vector<fs::path>& frames, const fs::path& target, int rate) {
@@ -143,10 +185,9 @@ void make_film(const fs::path& ffmpeg, const std::vector<fs::path>& frames, cons
   const int status = run_program(arguments_for(ffmpeg, part, rate), work.path(), log);
   if (status != 0 || !fs::exists(part, ignored)) {
     fs::remove(part, ignored);
-    throw support::MachineError(
-        "cannot write " + target.string() + ": ffmpeg stopped with status " + std::to_string(status) + ":\n" +
-        last_lines(log, 8) +
-        "\nthe frames are kept; replace the damaged one it names, or try the other of .mp4 and .webm");
+    const std::string said = last_lines(log, 8);
+    throw support::MachineError("cannot write " + target.string() + ": ffmpeg stopped with status " +
+                                std::to_string(status) + ":\n" + said + "\n" + remedy(said, target));
   }
   fs::rename(part, target);
 }
@@ -154,7 +195,8 @@ void make_film(const fs::path& ffmpeg, const std::vector<fs::path>& frames, cons
 }  // namespace
 
 std::optional<fs::path> write_film(const fs::path& frames_folder, const fs::path& target, int frames_per_second) {
-  check_request(target, frames_per_second);
+  format_of(target);
+  if (frames_per_second < 1) throw std::invalid_argument("a film needs at least one frame per second");
   const std::optional<fs::path> ffmpeg = find_on_path("ffmpeg");
   const std::vector<fs::path> frames = support::files_with_ending(frames_folder, {".png"});
   if (!ffmpeg || frames.empty()) return std::nullopt;

@@ -33,9 +33,9 @@ fs::path without_trailing_slash(const fs::path& path) {
 }
 
 /// All that a run writes but its manifest, by name.
-constexpr const char* results[] = {"experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html",
-                                   "film.mp4",        "figures",   "frames",       "vtk",         "particles",
-                                   "checkpoint"};
+constexpr const char* results[] = {
+    "experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html", "film.mp4",  "film.webm",
+    "film.webp",       "figures",   "frames",       "vtk",         "particles",   "checkpoint"};
 
 void make_folder(const fs::path& folder) {
   std::error_code error;

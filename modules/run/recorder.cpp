@@ -278,9 +278,10 @@ void Recorder::draw_frames() {
     frames_drawn_ += snapshots_.size();
   }
   snapshots_.clear();
-  if (!simulation_.experiment().output.film || frames_drawn_ < 2) return;
-  if (!output::write_film(folder_.frames(), folder_.root() / "film.mp4", 20))
-    std::cerr << "no film: ffmpeg is not installed (apt-get install ffmpeg); the frames are there\n";
+  const std::string& format = simulation_.experiment().output.film;
+  if (format.empty() || frames_drawn_ < 2) return;
+  if (!output::write_film(folder_.frames(), folder_.root() / ("film." + format), output::frames_per_second))
+    std::cerr << output::no_ffmpeg << "\n";
 }
 
 void Recorder::write_vtk(std::size_t index) {

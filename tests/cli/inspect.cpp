@@ -68,7 +68,8 @@ double held(const Json& scene) {
 
 TEST_CASE("--help lists every verb and exit code") {
   const std::string help = printed({"--help"});
-  for (const char* verb : {"run", "check", "plan", "list", "describe", "schema", "figure", "compare", "contact-offset"})
+  for (const char* verb :
+       {"run", "check", "plan", "list", "describe", "schema", "figure", "film", "compare", "contact-offset"})
     CHECK(has(help, std::string("\n  ") + verb + " "));
   for (const char* code :
        {"0 done", "2 bad input", "3 the run became unstable", "4 an expectation", "5 the machine", "130 stopped"})

@@ -183,6 +183,18 @@ TEST_CASE("defaults are filled and the step is automatic", "[config]") {
   CHECK(e.resolved["solver"]["time_step"] == "auto");
 }
 
+TEST_CASE("a film is none, of a format, or mp4 where none is named", "[config][film]") {
+  const auto format = [](const std::string& film) {
+    return read_text(two_discs, {"/output/film=" + film}).output.film;
+  };
+  CHECK(read_text(two_discs).output.film.empty());
+  CHECK(format("false").empty());
+  CHECK(format("true") == "mp4");
+  for (const char* name : {"mp4", "webm", "webp"}) CHECK(format(name) == name);
+  const Experiment animated = read_text(two_discs, {"/output/film=webp"});
+  check_same_experiment(read_text(animated.resolved.dump(2)), animated);
+}
+
 TEST_CASE("limits have defaults, and null takes one away", "[config]") {
   const Experiment e = read_text(smallest_3d);
   CHECK(!e.limits.isolated);

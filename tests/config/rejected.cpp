@@ -209,6 +209,11 @@ TEST_CASE("output and comparisons", "[config]") {
         R"(FILE:33:22: /output/film: a film needs "frames" of at least 2
 FILE:33:35: /output/vtk: VTK files are written at frames: set "frames"
 FILE:33:54: /output/colour_by: expected one of "speed", "pressure", "density", got "sped"; did you mean "speed"?)");
+  CHECK(errors_after("\"vtk\": true", "\"film\": \"web\"") ==
+        "FILE:33:36: /output/film: expected true, false or one of \"mp4\", \"webm\", \"webp\", got \"web\"; did you "
+        "mean \"webm\"?");
+  CHECK(errors_after("\"vtk\": true", "\"film\": 1") ==
+        "FILE:33:36: /output/film: expected true, false or one of \"mp4\", \"webm\", \"webp\", got the number 1");
   CHECK(errors_after("\"vtk\": true", "\"vtk\": true, \"ledger\": false, \"ledger_every\": 10") ==
         "FILE:33:74: /output/ledger_every: there is no ledger to make entries in: set \"ledger\" to true");
   CHECK(errors_after("\"at_least\": 0.98", "\"at_least\": 0.98, \"at_most\": 0.9, \"tolerance\": 0.1") ==

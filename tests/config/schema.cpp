@@ -120,6 +120,13 @@ TEST_CASE("a key that may be null says so, with its default", "[schema]") {
   CHECK(limits["isolated"]["type"] == "boolean");
 }
 
+TEST_CASE("a choice that may be true or false says so, with its default", "[schema][film]") {
+  const Json& film = schema()["$defs"]["output"]["properties"]["film"];
+  CHECK(film["anyOf"][0]["type"] == "boolean");
+  CHECK(film["anyOf"][1]["enum"] == Json({"mp4", "webm", "webp"}));
+  CHECK(film["default"] == false);
+}
+
 TEST_CASE("every reference in the schema leads somewhere", "[schema]") {
   each(schema(), [](const Json& value) {
     if (!value.is_object() || !value.contains("$ref")) return;

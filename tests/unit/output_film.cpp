@@ -53,7 +53,8 @@ TEST_CASE("without ffmpeg or frames there is no film and no error", "[output][fi
   fs::create_directory(scratch / "empty");
   const OnlyPath path(scratch / "empty");
   CHECK_FALSE(write_film(frames, scratch / "film.mp4", 25));
-  CHECK_THROWS_AS(write_film(frames, scratch / "film.gif", 25), std::invalid_argument);
+  CHECK(message_of<std::invalid_argument>([&] { write_film(frames, scratch / "film.gif", 25); }) ==
+        "a film ends in .mp4, .webm or .webp, not 'film.gif'");
   CHECK_THROWS_AS(write_film(frames, scratch / "film.mp4", 0), std::invalid_argument);
 }
 
@@ -68,6 +69,31 @@ TEST_CASE("ffmpeg gets the frames in counting order and its film takes the targe
   REQUIRE(film);
   CHECK(read_file(*film) == "0,1,2,3,4,5,6,7,8,9,10,");
   CHECK(entries_in(scratch.path()) == 3);
+}
+
+TEST_CASE("ffmpeg is told the encoder that goes with the ending, and loops an animated picture", "[output][film]") {
+  const TemporaryFolder scratch;
+  const fs::path frames = make_frames(scratch);
+  install_stand_in(scratch, "for last; do :; done\necho \"$@\" > \"$last\"\n");
+  const OnlyPath path(scratch / "bin");
+  const auto told = [&](const char* name) { return read_file(*write_film(frames, scratch / name, 20)); };
+  CHECK(contains(told("film.mp4"), " -c:v libx264 "));
+  CHECK(contains(told("film.webm"), " -c:v libvpx-vp9 "));
+  const std::string animated = told("film.webp");
+  CHECK(contains(animated, " -framerate 20 "));
+  CHECK(contains(animated, " -c:v libwebp "));
+  CHECK(contains(animated, " -loop 0 "));
+  CHECK(contains(animated, "scale='min(640,iw)':"));
+}
+
+TEST_CASE("an ffmpeg without the encoder is told by the encoder's name", "[output][film]") {
+  const TemporaryFolder scratch;
+  const fs::path frames = make_frames(scratch);
+  install_stand_in(scratch, "echo \"Unknown encoder 'libwebp'\" >&2\nexit 1\n");
+  const OnlyPath path(scratch / "bin");
+  const std::string message = message_of<MachineError>([&] { write_film(frames, scratch / "film.webp", 20); });
+  CHECK(contains(message, "built without the encoder libwebp: take another of .mp4, .webm and .webp"));
+  CHECK_FALSE(contains(message, "damaged"));
 }
 
 TEST_CASE("a failure of ffmpeg is told with its last lines, and leaves no half film", "[output][film]") {

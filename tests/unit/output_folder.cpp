@@ -23,7 +23,8 @@ TEST_CASE("a run folder is made with those above it, and replaced file by file",
   CHECK(first.root().filename() == "first");
   first.write_json("manifest.json", {{"run", 1}});
   CHECK(RunFolder::holds_run(path));
-  for (const char* name : {"experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html", "film.mp4"})
+  for (const char* name : {"experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html", "film.mp4",
+                           "film.webm", "film.webp"})
     write_atomically(first.root() / name, "old");
   write_atomically(first.frames() / "frame.png", "picture");
   for (const fs::path& folder : {first.figures(), first.vtk(), first.particles(), first.checkpoint()})
