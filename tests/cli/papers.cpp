@@ -929,8 +929,8 @@ TEST_CASE("every scene of papers comes to its exact numbers, and to those that t
         "gas_shock", "shock_tube", "granular_collapse", "dam_break_front", "solid_shock", "taylor_bar"}) {
     INFO(name);
     const Folder folder;
-    const Result result =
-        call(folder, {"run", scene_of(name).string(), "--out", "run", "--threads", "1", "--set", "/output/frames=0"});
+    const Result result = call(folder, {"run", scene_of(name).string(), "--out", "run", "--threads", "1", "--set",
+                                        "/output/frames=0", "--set", "/output/film=false"});
     INFO(result.err);
     CHECK(result.code == 0);
     const Json summary = json_in(folder / "run/summary.json");
