@@ -115,7 +115,9 @@ TEST_CASE("the films of the gallery are what their scenes ask for, in few bytes"
   for (const auto& entry : fs::directory_iterator(root / "figures/gallery")) {
     if (entry.path().extension() != ".webp") continue;
     INFO(entry.path());
-    const Json output = scene_in(root / "experiments/gallery" / (entry.path().stem().string() + ".json"))["output"];
+    const fs::path scene = root / "experiments/gallery" / (entry.path().stem().string() + ".json");
+    REQUIRE(fs::is_regular_file(scene));
+    const Json output = scene_in(scene)["output"];
     REQUIRE(output["film"] == "webp");
     const std::uint32_t frames = output["frames"];
     CHECK((frames >= 25 && frames <= 60));
