@@ -1,8 +1,8 @@
-// The automatic step with every law, at rest and deformed: it has to follow the stiffness that a law has where it is now. A
-// medium without surfaces is strained evenly, so that it is in balance, and gets velocities that are noise of 1e-9 of its
-// waves. What comes of such noise is a matter of linear waves alone: at the estimate it must not grow, at three times the
-// estimate it must. Where waves are as fast as the law says, three estimates are more than any wave along an axis stands:
-// 1.668 h / c with FLIP and particles on nodes, less elsewhere (verification/critical_step.cpp).
+// The estimate of the step, h / c, with every law, at rest and deformed: it has to follow the stiffness that a law has where it
+// is now. A medium without surfaces is strained evenly, so that it is in balance, and gets velocities that are noise of 1e-9
+// of its waves. What comes of such noise is a matter of linear waves alone: at the whole estimate it must not grow, at twice
+// the estimate it must, with APIC at three times. Where waves are as fast as the law says, that is more than any wave along
+// an axis stands: 1.668 h / c with FLIP and particles on nodes, 1.768 with PIC, less elsewhere (verification/critical_step.cpp).
 //
 // Noise may grow at any step in a medium that has no stiffness left in some direction, which is known from the law alone: the
 // acoustic tensor Q(n) m = dtau n - (m.n) tau n, with dtau of the strain m (x) n, has an eigenvalue that is not above zero.
@@ -126,7 +126,7 @@ Waves waves(const AnyLaw& law, int dimension, const Strain& strain) {
 void check_every_law(int dimension, const std::string& transfer, int steps) {
   std::string left_out;
   int laws = 0, must_grow = 0, may_grow = 0;
-  std::printf("Noise after %d steps over that at the start, %d-D, %s: at the estimate, at three estimates\n", steps,
+  std::printf("Noise after %d steps over that at the start, %d-D, %s: at the estimate, far beyond it\n", steps,
               dimension, transfer.c_str());
   for (const AnyLaw& law : every_law(dimension, left_out)) {
     std::printf("  %-23s", law.id.c_str());
@@ -137,18 +137,17 @@ void check_every_law(int dimension, const std::string& transfer, int steps) {
       const double speed = material_quantities(first.experiment, 0, first.body()).wave_speed[0];
       REQUIRE(speed > 0);
       const Waves wave = waves(law, dimension, strain);
-      const double at_estimate = growth(text, {}, steps);
+      const auto step_of = [&](double estimates) { return set("/solver/time_step", digits(estimates * 0.1 / speed)); };
+      const double at_estimate = growth(text, {step_of(1)}, steps);
       std::printf(" %7.0e", at_estimate);
       if (at_estimate > grown) {
         CHECK(wave.may_grow());
-        first.simulation.step();
-        const std::string quarter = digits(first.simulation.last_time_step() / 4);
-        if (transfer == "flip") CHECK(growth(text, {set("/solver/time_step", quarter)}, 4 * steps) > std::sqrt(grown));
+        if (transfer == "flip") CHECK(growth(text, {step_of(0.25)}, 4 * steps) > 1);
         ++may_grow;
       }
-      // Three estimates are two crossings of a cell by the wave that there is.
-      if (3 * std::sqrt(wave.fastest) < 2) continue;
-      const double beyond = growth(text, {set("/solver/time_step", digits(3 * 0.1 / speed))}, steps);
+      // A wave slower than the law says may stand more, and noise dies where the law flows or opens.
+      if (wave.fastest < 0.64 || wave.weakest < -1e-6) continue;
+      const double beyond = growth(text, {step_of(transfer == "flip" ? 2 : 3)}, steps);
       std::printf(" %7.0e", beyond);
       CHECK(beyond > grown);
       ++must_grow;
@@ -159,30 +158,33 @@ void check_every_law(int dimension, const std::string& transfer, int steps) {
   INFO(left_out);
   CHECK(left_out.empty());
   CHECK(laws >= 25);
-  CHECK(must_grow >= 5 * laws);
+  CHECK(must_grow >= 4 * laws);
   CHECK(may_grow < laws);
-  std::printf("  %d of %d states must grow at three estimates, %d grow at any step\n", must_grow, 6 * laws, may_grow);
+  std::printf("  %d of %d states must grow beyond the estimate, %d grow at any step\n", must_grow, 6 * laws, may_grow);
 }
 
 }  // namespace
 
-TEST_CASE("every law stands the estimated step in 2-D however it is strained, and not three times that", "[steps]") {
+TEST_CASE("every law stands the estimated step in 2-D however it is strained, and not twice that", "[steps]") {
   check_every_law(2, "flip", 300);
 }
 
-TEST_CASE("every law stands the estimated step in 3-D however it is strained, and not three times that", "[steps]") {
-  check_every_law(3, "flip", 120);
+TEST_CASE("every law stands the estimated step in 3-D however it is strained, and not twice that", "[steps]") {
+  check_every_law(3, "flip", 100);
 }
 
 TEST_CASE("every law stands the estimated step with APIC however it is strained, and not three times that", "[steps]") {
   check_every_law(2, "apic", 300);
 }
 
-TEST_CASE("every law stands the estimated step on either backend and in float, and the default one", "[steps]") {
+TEST_CASE("every law stands the estimated step with either backend and in float, and the automatic one", "[steps]") {
   std::string left_out;
   for (const AnyLaw& law : every_law(2, left_out))
-    for (const std::vector<std::string>& settings : std::vector<std::vector<std::string>>{
-             {set("/backend", "reference")}, {set("/precision", "float")}, {set("/solver/courant", "0.3")}})
+    for (const std::vector<std::string>& settings :
+         std::vector<std::vector<std::string>>{{set("/backend", "reference")},
+                                               {set("/precision", "float")},
+                                               {set("/solver/courant", "0.3")},
+                                               {set("/solver/courant", "1")}})
       for (const Strain& strain : {strains(2)[0], strains(2)[3]}) {
         // In float, F does not show strains of 1e-9.
         const double noise = settings[0] == "/precision=float" ? 1e-3 : 1e-9;
