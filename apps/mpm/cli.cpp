@@ -25,6 +25,7 @@
 #include "plugin/on_demand.hpp"
 #include "solvers/solver.hpp"
 #include "support/files.hpp"
+#include "support/film_formats.hpp"
 
 namespace mpm::app {
 namespace {
@@ -458,7 +459,7 @@ int run_command_line(int argc, char** argv) {
       app.add_subcommand("film", "join the frames of a recorded run to a film, film.FORMAT in its folder");
   film_verb->add_option("RUN", film_run, "run folder")->required();
   film_verb->add_option("--format", format, "webp is an animated picture, for pages")
-      ->check(CLI::IsMember({"mp4", "webm", "webp"}))
+      ->check(CLI::IsMember(support::film_formats()))
       ->capture_default_str();
   film_verb->callback([&] { code = guarded([&] { return film(film_run, format); }, "no film was made"); });
 

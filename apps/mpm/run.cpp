@@ -26,6 +26,7 @@
 #include "run/start_checks.hpp"
 #include "run/summary.hpp"
 #include "support/files.hpp"
+#include "support/film_formats.hpp"
 #include "support/hash.hpp"
 #include "support/processors.hpp"
 #include "support/team.hpp"
@@ -272,8 +273,8 @@ EarlierParts resume(Simulation& simulation, Recorder& recorder, const output::Ru
   EarlierParts earlier = restore_newest(simulation, recorder, folder, identity_of(simulation.experiment()));
   folder.write_json("manifest.json", resumed_manifest(folder, options, threads, simulation.steps()));
   // The film goes as well, because the rest of the run may be told to make one of another format, or none.
-  for (const char* name : {"summary.json", "report.html", "film.mp4", "film.webm", "film.webp"})
-    std::filesystem::remove(folder.root() / name);
+  for (const char* name : {"summary.json", "report.html"}) std::filesystem::remove(folder.root() / name);
+  for (const std::string& format : support::film_formats()) std::filesystem::remove(folder.root() / ("film." + format));
   std::cerr << "resumed from step " << simulation.steps() << ", t = " << number_text(simulation.time()) << " s\n";
   return earlier;
 }

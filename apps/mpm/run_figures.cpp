@@ -238,16 +238,20 @@ void draw_pairs(const Table& table, const RunLabel& label, const std::filesystem
   for (const std::string quantity : {"force", "impulse"}) {
     const std::string normal = " normal " + quantity, tangential = " tangential " + quantity;
     Plot plot;
-    for (const std::string& name : names_without_units(table)) {
-      if (!name.starts_with(start) || !name.ends_with(normal)) continue;
+    std::vector<std::string> pairs;
+    for (const std::string& name : names_without_units(table))
+      if (name.starts_with(start) && name.ends_with(normal)) pairs.push_back(name);
+    for (const std::string& name : pairs) {
       if (plot.title.empty())
         plot = plot_of(table, label,
                        (quantity == "force" ? "Contact force of pairs: " : "Contact impulse of pairs: ") + label.title,
                        quantity == "force" ? "force F" : "impulse J", name);
       const std::string pair = name.substr(0, name.size() - normal.size()), bodies = pair.substr(start.size());
-      if (largest_of(column(table, name)) == 0 && !plot.series.empty()) continue;
+      const std::vector<double> across = size_of(table, pair + tangential);
+      const bool met = std::max(largest_of(column(table, name)), largest_of(across)) > 0;
+      if (!met && !(plot.series.empty() && name == pairs.back())) continue;  // one curve at least, if nothing meets
       add(plot, table, name, bodies + ", normal");
-      plot.series.push_back({bodies + ", tangential", column(table, "time"), size_of(table, pair + tangential)});
+      plot.series.push_back({bodies + ", tangential", column(table, "time"), across});
     }
     render::write_figure(plot, quantity == "force" ? stem : stem.parent_path() / "contact_pair_impulses");
   }
@@ -312,7 +316,8 @@ constexpr FigureKind kinds[] = {
     {"dissipation", "ledger residual", "set /output/ledger to true", draw_dissipation},
     {"momentum", "momentum y", "", draw_momentum},
     {"contact", "contact nodes", "give the experiment a \"contact\"", draw_contact},
-    {"contact_pairs", "pair ", "set /output/contact_pairs to true", draw_pairs},
+    {"contact_pairs", "pair ", "give the experiment a \"contact\" between bodies and set /output/contact_pairs to true",
+     draw_pairs},
     {"reactions", "reaction ", "name supports in /output/reactions", draw_reactions},
     {"volume_ratio", "smallest volume ratio", "", draw_volume},
     {"error", "position error rms", "name an exact solution in /compare/exact", draw_error},

@@ -26,19 +26,20 @@ std::vector<ParameterSpec> record_parameters() {
   const auto defined = [](const char* name, const char* doc, const char* definition) {
     return parameter(name, Type::nested, "", doc).defined_as(definition);
   };
-  return {
-      defined("bodies", "true, or a list of bodies: their numbers have columns of their own", "recorded_bodies"),
-      defined("groups", "a list of groups of particles, whose numbers have columns of their own", "groups"),
-      defined("probes", "a list of probes: values at a particle, a place, along a line, over a section", "probes"),
-      parameter("contact_pairs", Type::boolean, "",
-                "Contact has columns for each pair of velocity fields, and for each rigid body its gap.")
-          .standard(false),
-      parameter("normal_error", Type::boolean, "",
-                "The pairs of contact_pairs have columns for the angle of their normals to the surfaces of the bodies.")
-          .standard(false),
-      parameter("contact_nodes", Type::boolean, "",
-                "Each frame shows the nodes where bodies meet, and a table beside it lists them.")
-          .standard(false)};
+  return {defined("bodies", "true, or a list of bodies: their numbers have columns of their own", "recorded_bodies"),
+          defined("groups", "a list of groups of particles, whose numbers have columns of their own", "groups"),
+          defined("probes", "a list of probes: values at a particle, a place, along a line, over a section", "probes"),
+          parameter("contact_pairs", Type::boolean, "",
+                    "Contact has columns for each pair of velocity fields, and for each rigid body its gap.")
+              .standard(false),
+          parameter(
+              "normal_error", Type::boolean, "",
+              "The pairs of contact_pairs have columns for what is known from the surfaces of the bodies: the angle of "
+              "their normals to these, the gap between them, and the force before it closes.")
+              .standard(false),
+          parameter("contact_nodes", Type::boolean, "",
+                    "Each frame shows the nodes where bodies meet, and a table beside it lists them.")
+              .standard(false)};
 }
 
 Section group_section() {

@@ -4,6 +4,7 @@
 #include "experiment/particle_output.hpp"
 #include "experiment/records.hpp"
 #include "experiment/thermal.hpp"
+#include "support/film_formats.hpp"
 
 namespace mpm {
 namespace {
@@ -487,7 +488,7 @@ Section output_section(const ReadOptions& options) {
           parameter("vtk", Type::boolean, "", "Write a VTK file beside each frame.").standard(false),
           particle_output_parameter(),
           parameter("film", Type::choice, "", "Join the frames to a film of this format; true: mp4.")
-              .of({"mp4", "webm", "webp"})
+              .of(support::film_formats())
               .or_boolean()
               .standard(false),
           parameter("reactions", Type::names, "",

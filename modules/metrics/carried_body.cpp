@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -48,7 +49,7 @@ CarriedBody::CarriedBody(const BodyView& view, const Geometry& geometry)
     squares += view.mass(p) * (place(p) - now_ - gradient * (start(p) - begin_)).squaredNorm();
   misfit_ = std::sqrt(squares / mass);
   const double h = experiment.grid.cell_size;
-  step_ = 1e-4 * h;
+  cell_ = h;
   for (const SurfacePiece& piece : geometry.surface(h / 4, {experiment.grid.lower, experiment.grid.upper})) {
     const Vector from = vector(piece.point) - begin_;
     surface_.push_back({now_ + gradient * from, (inverse_.transpose() * vector(piece.normal)).normalized()});
@@ -56,21 +57,40 @@ CarriedBody::CarriedBody(const BodyView& view, const Geometry& geometry)
 }
 
 CarriedBody::Vector CarriedBody::slope(const Vector& x) const {
+  const double step = 1e-4 * cell_;
   const Vector X = begin_ + inverse_ * (x - now_);
   Vector difference;
   for (int c = 0; c < 3; ++c) {
-    const Vector aside = step_ * Vector::Unit(c);
+    const Vector aside = step * Vector::Unit(c);
     difference[c] = at_start(X + aside) - at_start(X - aside);
   }
-  return inverse_.transpose() * difference / (2 * step_);
+  return inverse_.transpose() * difference / (2 * step);
 }
 
-CarriedBody::Vector CarriedBody::place_on_surface(Vector x) const {
-  for (int k = 0; k < 4; ++k) {  // one is enough where the map only moves and turns
+bool CarriedBody::put_on_surface(Vector& x) const {
+  constexpr int most = 60;  // Newton's steps between faces that meet come nearer by a share in each
+  for (int k = 0; k < most; ++k) {
+    const double outside = distance(x);
+    if (std::abs(outside) < 1e-9 * cell_) return true;
     const Vector steepest = slope(x);
     const double squared = steepest.squaredNorm();
-    if (!(squared > 0)) break;
-    x -= distance(x) / squared * steepest;
+    if (!(squared > 0)) return false;
+    x -= outside / squared * steepest;
+  }
+  return false;
+}
+
+CarriedBody::Vector CarriedBody::nearest_on_surface(const Vector& y, Vector x) const {
+  if (Vector straight = y; put_on_surface(straight) && (y - straight).norm() < (y - x).norm()) x = straight;
+  double share = 1;  // of the way along the surface, so that a curved one is not overshot
+  for (int k = 0; k < 200 && share > 1e-6; ++k) {
+    const Vector normal = outward(x), to = y - x, along = to - to.dot(normal) * normal;
+    if (along.norm() < 1e-9 * cell_) break;
+    Vector tried = x + share * along;
+    if (put_on_surface(tried) && (y - tried).norm() < to.norm())
+      x = tried, share = std::min(1.0, 1.5 * share);
+    else
+      share /= 2;
   }
   return x;
 }

@@ -28,12 +28,14 @@ class CarriedBody {
   double misfit() const { return misfit_; }
   /// Pieces of a quarter of a cell; none where there is no map.
   const std::vector<Piece>& surface() const { return surface_; }
-  /// How far a place is outside of the body, in metres of the body as it began.
+  /// How far a place is outside of the body, in metres of the body as it began: less than zero inside.
   double distance(const Vector& x) const { return at_start(begin_ + inverse_ * (x - now_)); }
   /// The direction in which that grows most, a unit vector; zero where there is none.
   Vector outward(const Vector& x) const { return slope(x).stableNormalized(); }
-  /// The place on the surface to which that direction leads from x.
-  Vector place_on_surface(Vector x) const;
+  /// Takes a place near the surface onto it; false where it does not come to lie on it to 1e-9 cells.
+  bool put_on_surface(Vector& x) const;
+  /// The place of the surface that is nearest to y, sought from a place on it: the distance falls all the way.
+  Vector nearest_on_surface(const Vector& y, Vector x) const;
 
  private:
   double at_start(const Vector& X) const { return geometry_.distance({X[0], X[1], X[2]}); }
@@ -43,7 +45,7 @@ class CarriedBody {
   const Geometry& geometry_;
   Vector now_ = Vector::Zero(), begin_ = Vector::Zero();
   Eigen::Matrix3d inverse_ = Eigen::Matrix3d::Identity();
-  double misfit_, step_ = 0;
+  double misfit_, cell_ = 0;  ///< m
   std::vector<Piece> surface_;
 };
 

@@ -35,7 +35,7 @@ Vector3 place_of(const BodyState& state, std::size_t p, int dimension) {
   return x;
 }
 
-/// The size of a force while the gap is open, which acts before the surfaces meet; not a number where no gap is known.
+/// The size of a force that acts while the gap is open, before the surfaces meet; not a number where no gap is known.
 double early_force(double gap, const Vector3& force) {
   return std::isnan(gap) ? gap : gap > 0 ? std::hypot(force[0], force[1], force[2]) : 0;
 }
@@ -204,7 +204,8 @@ void ChosenNumbers::add_pairs(Views& views, std::vector<ChosenRow>& rows) const 
       add("largest normal error", "deg", known.largest_normal_error);
       add("surface misfit", "m", known.misfit);
       add("gap", "m", known.gap);
-      add("early force", units.force, early_force(known.gap, pair.force));
+      // What pulls across an open gap is meant to.
+      add("early force", units.force, pair.normal_force < 0 ? 0 : early_force(known.gap, pair.force));
     }
 }
 

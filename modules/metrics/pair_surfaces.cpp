@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "metrics/carried_body.hpp"
 #include "simulation/contact_impulse.hpp"
@@ -87,35 +88,42 @@ struct LoadedNode {
   double force;  ///< N
 };
 
-/// The smallest distance of two bodies, m; where they overlap, less than zero by the deepest piece of a surface.
-double gap_between(const CarriedBody& a, const CarriedBody& b) {
-  double gap = std::numeric_limits<double>::infinity();
-  Vector x = Vector::Zero();
-  const CarriedBody* of_x = nullptr;  // whose surface x is on
-  for (const auto& [body, other] : {std::pair{&a, &b}, std::pair{&b, &a}})
-    for (const Piece& piece : body->surface()) {
+/// The smallest distance of two bodies, m; less than zero by the deepest piece where one lies inside the other.
+double gap_between(const CarriedBody& a, const CarriedBody& b, double cell_size) {
+  if (a.surface().empty() || b.surface().empty()) return nothing;
+  double nearest = std::numeric_limits<double>::infinity();
+  Vector place = Vector::Zero();
+  const CarriedBody* body = &a;  // whose surface the place is on
+  for (const auto& [one, other] : {std::pair{&a, &b}, std::pair{&b, &a}})
+    for (const Piece& piece : one->surface()) {
       const double distance = other->distance(piece.place);
-      if (distance < gap) gap = distance, x = piece.place, of_x = body;
+      if (distance < nearest) nearest = distance, place = piece.place, body = one;
     }
-  // Between the middles of pieces lies the nearest place: going from one surface to the other and back leads there.
-  constexpr int most = 200;
-  constexpr double rounding = 1e-12;
-  for (int k = 0; k < most && gap > 0; ++k) {
-    of_x = of_x == &a ? &b : &a;
-    const Vector y = of_x->place_on_surface(x);
+  if (!(nearest > 0)) return nearest;
+  // The nearest places lie between the middles of pieces: going from one surface to the other and back leads there.
+  const CarriedBody* const other = body == &a ? &b : &a;
+  const Vector begin = place;
+  const auto nearer = [&](const Piece& one, const Piece& two) {
+    return (one.place - begin).squaredNorm() < (two.place - begin).squaredNorm();
+  };
+  Vector x = begin, y = std::min_element(other->surface().begin(), other->surface().end(), nearer)->place;
+  double gap = (y - x).norm();
+  for (int k = 0; k < 100; ++k) {
     const double before = gap;
-    gap = k == 0 ? (y - x).norm() : std::min(gap, (y - x).norm());
-    x = y;
-    if (k > 1 && !(gap < before * (1 - rounding))) break;
+    y = other->nearest_on_surface(x, y);
+    x = body->nearest_on_surface(y, x);
+    gap = (y - x).norm();
+    if (!(gap < before - 1e-9 * cell_size)) break;
   }
-  return gap;
+  // Surfaces that cross between the middles of pieces touch, but for rounding.
+  return gap > 1e-7 * cell_size ? gap : 0;
 }
 
 /// The smallest gap of the bodies of two fields; NaN where one is not known.
-double smallest_gap(const std::vector<CarriedBody>& of_a, const std::vector<CarriedBody>& of_b) {
+double smallest_gap(const std::vector<CarriedBody>& of_a, const std::vector<CarriedBody>& of_b, double cell_size) {
   double gap = std::numeric_limits<double>::infinity();
   for (const CarriedBody& a : of_a)
-    for (const CarriedBody& b : of_b) gap = std::min(gap, gap_between(a, b));
+    for (const CarriedBody& b : of_b) gap = std::min(gap, gap_between(a, b, cell_size));
   return gap;
 }
 
@@ -123,7 +131,7 @@ PairSurfaces surfaces_of_pair(const Experiment& experiment, const std::vector<Ca
                               const std::vector<CarriedBody>& of_b, const std::vector<LoadedNode>& nodes) {
   PairSurfaces error{nothing, nothing, larger_misfit(of_a, of_b), nothing};
   if (std::isnan(error.misfit)) return error;
-  error.gap = smallest_gap(of_a, of_b);
+  error.gap = smallest_gap(of_a, of_b, experiment.grid.cell_size);
   if (nodes.empty()) return error;
   std::vector<Vector> places;
   double largest_force = 0;

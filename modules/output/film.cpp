@@ -4,6 +4,8 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
@@ -172,7 +174,7 @@ std::string remedy(const std::string& said, const fs::path& target) {
   if (said.find("Unknown encoder") != std::string::npos)
     return "the frames are kept; this ffmpeg was built without the encoder " + std::string(format_of(target).encoder) +
            ": take another of " + formats + ", or an ffmpeg that has it";
-  return "the frames are kept; replace the damaged one it names, or try another of " + formats;
+  return "the frames are kept; if it names a damaged one, replace it, else make room, or try another of " + formats;
 }
 
 void make_film(const fs::path& ffmpeg, const std::vector<fs::path>& frames, const fs::path& target, int rate) {

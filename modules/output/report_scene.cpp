@@ -2,6 +2,7 @@
 #include <cctype>
 
 #include "output/report_parts.hpp"
+#include "support/film_formats.hpp"
 #include "support/natural_order.hpp"
 
 namespace mpm::output::report {
@@ -202,7 +203,9 @@ std::string reproduction(const Run& run) {
 
 std::string files(const Run& run) {
   std::vector<std::filesystem::path> found =
-      support::files_with_ending(run.folder, {".json", ".csv", ".mp4", ".webm", ".pvd", ".txt"});
+      support::files_with_ending(run.folder, {".json", ".csv", ".pvd", ".txt"});
+  for (const std::string& format : support::film_formats())
+    for (auto& film : support::files_with_ending(run.folder, {"." + format})) found.push_back(std::move(film));
   for (auto& collection : support::files_with_ending(run.folder / "vtk", {".pvd"}))
     found.push_back(std::move(collection));
   std::string html;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/files.hpp"
+#include "support/film_formats.hpp"
 
 namespace mpm::output {
 namespace {
@@ -32,10 +33,9 @@ fs::path without_trailing_slash(const fs::path& path) {
   return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-/// All that a run writes but its manifest, by name.
-constexpr const char* results[] = {
-    "experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html", "film.mp4",  "film.webm",
-    "film.webp",       "figures",   "frames",       "vtk",         "particles",   "checkpoint"};
+/// All that a run writes but its manifest and its film, by name.
+constexpr const char* results[] = {"experiment.json", "plan.json", "summary.json", "metrics.csv", "report.html",
+                                   "figures",         "frames",    "vtk",          "particles",   "checkpoint"};
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
@@ -77,6 +77,7 @@ RunFolder RunFolder::replace(const fs::path& path) {
   // The summary goes first and the manifest stays: what is left when this is interrupted is an unfinished run.
   for (const char* name : {"summary.json", "report.html"}) folder.remove(name);
   for (const char* name : results) folder.remove(name);
+  for (const std::string& format : support::film_formats()) folder.remove(("film." + format).c_str());
   folder.remove_temporary_files();
   return folder;
 }

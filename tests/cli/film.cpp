@@ -55,6 +55,7 @@ TEST_CASE("a run makes the film that its experiment asks for, and another run ta
     INFO(result.err);
     CHECK(result.code == 0);
     CHECK(films_in(folder / "run") == Words{std::string("film.") + format});
+    CHECK(has(slurp(folder / "run/report.html"), std::string("film.") + format));
   }
   CHECK(run_filmed(folder, true, path, {"--replace"}).code == 0);
   CHECK(films_in(folder / "run") == Words{"film.mp4"});

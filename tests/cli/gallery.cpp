@@ -71,7 +71,7 @@ Animation animation_in(const fs::path& file) {
   return animation;
 }
 
-/// Pictures and films by name of the scene, of a page: those of figures/gallery, and films alone.
+/// The pictures and films of figures/gallery that a page shows, by the names of their files.
 std::set<std::string> shown_on(const std::string& page) {
   std::set<std::string> names;
   const std::regex link(R"re(!\[[^\]]+\]\(\.\./figures/gallery/([a-z_]+\.(?:png|webp))\))re");

@@ -703,15 +703,26 @@ double response_to_state(const Plugin& plugin, int D, const ParameterSample& par
 std::vector<Column> response_to_start(const Plugin& plugin, int D, const ParameterSample& parameters,
                                       const Call& start) {
   constexpr double share = 0x1p-20;
-  std::vector<Column> there = start.out, response;
+  const auto zeros_like = [](const std::vector<Column>& columns) {
+    std::vector<Column> zeros;
+    for (const Column& column : columns) zeros.emplace_back(column.size(), 0.0);
+    return zeros;
+  };
+  std::vector<Column> there = start.out;
   run_material(plugin, D, parameters, start.in[0].data(), there);
-  for (const Column& column : there) response.emplace_back(column.size(), 0.0);
+  std::vector<Column> response = zeros_like(there);
   for (std::size_t row = 0; row < start.out[0].size(); row += particles) {  // a component of all particles
-    std::vector<Column> turned = start.out;
-    for (std::size_t lane = row; lane < row + particles; ++lane) turned[0][lane] *= 1 + share;
-    run_material(plugin, D, parameters, start.in[0].data(), turned);
+    std::vector<Column> larger = zeros_like(there);
+    for (const double turn : {share, -share}) {  // a law may answer to one side alone
+      std::vector<Column> turned = start.out;
+      for (std::size_t lane = row; lane < row + particles; ++lane) turned[0][lane] *= 1 + turn;
+      run_material(plugin, D, parameters, start.in[0].data(), turned);
+      for (std::size_t k = 0; k < there.size(); ++k)
+        for (std::size_t i = 0; i < there[k].size(); ++i)
+          larger[k][i] = mpm::test::larger(larger[k][i], std::abs(turned[k][i] - there[k][i]) / share);
+    }
     for (std::size_t k = 0; k < there.size(); ++k)
-      for (std::size_t i = 0; i < there[k].size(); ++i) response[k][i] += std::abs(turned[k][i] - there[k][i]) / share;
+      for (std::size_t i = 0; i < there[k].size(); ++i) response[k][i] += larger[k][i];
   }
   return response;
 }
