@@ -108,10 +108,10 @@ TEST_CASE("the figures of pairs show the normal force, the size of the tangentia
   scene["figures"] = {"contact_pairs"};
   REQUIRE(run_scene(folder, scene).code == 0);
   const auto table = metrics_of(folder / "run");
-  for (const auto& [file, quantity] :
-       {std::pair{"contact_pairs", "force"}, std::pair{"contact_pair_impulses", "impulse"}}) {
+  for (const std::string quantity : {"force", "impulse"}) {
+    const std::string file = quantity == "force" ? "contact_pairs" : "contact_pair_impulses";
     INFO(file);
-    std::istringstream drawn(slurp(folder / "run/figures" / (std::string(file) + ".csv")));
+    std::istringstream drawn(slurp(folder / "run/figures" / (file + ".csv")));
     std::map<std::string, std::vector<double>> curves;
     for (std::string line; std::getline(drawn, line);)
       if (line.starts_with('"'))  // "ball other, normal",computed,time,value,,
@@ -128,7 +128,7 @@ TEST_CASE("the figures of pairs show the normal force, the size of the tangentia
       CHECK(curves["ball other, normal"][k] == Approx(normal[k]));
       CHECK(curves["ball other, tangential"][k] == Approx(std::hypot(x[k], y[k])));
     }
-    CHECK(fs::is_regular_file(folder / "run/figures" / (std::string(file) + ".png")));
+    CHECK(fs::is_regular_file(folder / "run/figures" / (file + ".png")));
     CHECK(has(slurp(folder / "run/report.html"), file));
   }
   scene["output"].erase("contact_pairs"), scene["output"].erase("normal_error");
