@@ -202,8 +202,7 @@ std::string reproduction(const Run& run) {
 }
 
 std::string files(const Run& run) {
-  std::vector<std::filesystem::path> found =
-      support::files_with_ending(run.folder, {".json", ".csv", ".pvd", ".txt"});
+  std::vector<std::filesystem::path> found = support::files_with_ending(run.folder, {".json", ".csv", ".pvd", ".txt"});
   for (const std::string& format : support::film_formats())
     for (auto& film : support::files_with_ending(run.folder, {"." + format})) found.push_back(std::move(film));
   for (auto& collection : support::files_with_ending(run.folder / "vtk", {".pvd"}))
