@@ -7,48 +7,17 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "drive/read_drive.hpp"
 #include "drive/results.hpp"
 #include "drive/standard_paths.hpp"
-#include "plugin/registry.hpp"
+#include "driven_path.hpp"
 #include "support/catch.hpp"
 #include "support/fixture_materials.hpp"
 
 using namespace mpm;
 using namespace mpm::drive;
-using Json = nlohmann::ordered_json;
+using namespace mpm::driven_path;
 
 namespace {
-
-const ComponentLookup& lookup() {
-  static const Registry registry = Registry::from_folders(Registry::default_folders());
-  static const ComponentLookup components(registry);
-  return components;
-}
-
-DriveExperiment path_of(const Json& material, const Json& stages, int dimension = 3) {
-  const Json file{{"dimension", dimension},
-                  {"materials", {{"m", material}}},
-                  {"solver", {{"type", "material_point"}, {"stages", stages}}}};
-  return read_drive_text(file.dump(), "FILE", lookup());
-}
-
-Course driven(const Json& material, const Json& stages, int dimension = 3, Slopes slopes = Slopes::tangent) {
-  return follow(path_of(material, stages, dimension), slopes);
-}
-
-/// A stage to values of F, with stresses in place of others.
-Json stage(const Json& F, int steps = 1, const Json& stress = nullptr) {
-  Json json{{"steps", steps}, {"deformation_gradient", F}};
-  if (!stress.is_null()) json["stress"] = stress;
-  return json;
-}
-
-const Row& end_of(const Course& course) {
-  INFO((course.stop ? course.stop->reason : ""));
-  REQUIRE(!course.stop);
-  return course.rows.back();
-}
 
 constexpr double young = 1000, poisson = 0.3, mu = 384.615384615384615, lambda = 576.923076923076923;
 const std::array<std::string, 3> energies{"logarithmic", "quadratic", "simo"};
