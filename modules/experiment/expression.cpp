@@ -172,6 +172,12 @@ std::vector<std::string> expression_functions() {
   return names;
 }
 
+bool is_free_in_formulas(const std::string& name) {
+  const bool is_letter = name.size() == 1 && variable_letters.find(name) != std::string::npos;
+  const std::vector<std::string> called = expression_functions();
+  return !is_letter && name != "pi" && std::find(called.begin(), called.end(), name) == called.end();
+}
+
 void check_expression(const std::string& text, const ExpressionScope& scope) {
   check(text, scope);
 }

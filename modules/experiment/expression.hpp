@@ -35,8 +35,11 @@ struct ExpressionScope {
 /// Throws ExpressionError when `text` is no formula over `scope`.
 void check_expression(const std::string& text, const ExpressionScope& scope);
 
-/// Functions a formula may call, and names a constant may not take.
+/// Functions a formula may call.
 std::vector<std::string> expression_functions();
+
+/// Whether a constant may be called so: a name that means nothing in formulas yet.
+bool is_free_in_formulas(const std::string& name);
 
 /// Places of points as arrays of one coordinate each, m; null where there is none, which counts as 0.
 template <class T = double>

@@ -62,15 +62,13 @@ OrderedJson read_constants(const Node& root, ReadContext& context) {
     context.problem(*node, "expected an object of named numbers, got " + describe_value(*node));
     return nullptr;
   }
-  std::vector<std::string> taken = expression_functions();
-  for (const char* name : {"pi", "x", "y", "z", "X", "Y", "Z", "t"}) taken.emplace_back(name);
   OrderedJson resolved = OrderedJson::object();
   for (const Member& member : node->members) {
     double value = 0;
     if (!is_name(member.key)) {
       context.problem(member.at, member.value.pointer,
                       in_quotes(member.key) + " is no name: letters, digits and _, not beginning with a digit");
-    } else if (std::find(taken.begin(), taken.end(), member.key) != taken.end()) {
+    } else if (!is_free_in_formulas(member.key)) {
       context.problem(member.at, member.value.pointer, in_quotes(member.key) + " already has a meaning in expressions");
     } else {
       // A name whose value is wrong stays known, so that its uses are not reported as well.

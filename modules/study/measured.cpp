@@ -18,11 +18,11 @@ std::string three_digits(double value) {
 
 }  // namespace
 
-double evaluate(const Measure& measure, const Json& summary) {
+double evaluate(const Study& study, const Measure& measure, const Combination& combination, const Json& summary) {
   const double x = output::number_at(summary, measure.path);
   if (measure.formula.empty() || !std::isfinite(x)) return x;
   const VectorExpression::Term term = measure.formula;
-  const VectorExpression formula(std::span(&term, 1), {"x", {}});
+  const VectorExpression formula(std::span(&term, 1), scope_of_measures(study, combination.choices));
   return formula({x, 0, 0}, {x, 0, 0}, 0)[0];
 }
 

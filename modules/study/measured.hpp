@@ -14,8 +14,8 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-/// The measure's value, its formula applied; NaN when the summary lacks it.
-double evaluate(const Measure& measure, const Json& summary);
+/// The measure's value of a run of this combination, its formula applied; NaN when the summary lacks it.
+double evaluate(const Study& study, const Measure& measure, const Combination& combination, const Json& summary);
 
 /// Whether every bound holds; `broken` gets a sentence for each that does not.
 bool all_hold(const std::vector<Bound>& bounds, const Json& summary, std::vector<std::string>& broken);

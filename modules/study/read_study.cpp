@@ -39,12 +39,13 @@ Section study_section() {
 }
 
 Section measure_section() {
-  return {"measure",
-          "a measure",
-          {parameter("value", Type::string, "", "JSON pointer or dotted path into summary.json.").needed(),
-           parameter("label", Type::string, "", "Quantity on figures and in tables; default the name."),
-           parameter("unit", Type::string, "", "Unit of the result."),
-           parameter("formula", Type::string, "", "Formula of x, the value.")}};
+  return {
+      "measure",
+      "a measure",
+      {parameter("value", Type::string, "", "JSON pointer or dotted path into summary.json.").needed(),
+       parameter("label", Type::string, "", "Quantity on figures and in tables; default the name."),
+       parameter("unit", Type::string, "", "Unit of the result."),
+       parameter("formula", Type::string, "", "Formula of x, the value, and of the axes' numbers by their names.")}};
 }
 
 Section bisection_section() {
@@ -249,13 +250,14 @@ class StudyReader {
     Measure measure{member.key, fields.text("value"), words, fields.text("unit"), fields.text("formula")};
     if (fields.given("label")) measure.label = fields.text("label");
     if (!fields.given("formula")) return measure;
-    check_formula(fields, "formula");
+    const std::vector<std::size_t> first(study_.axes.size(), 0);
+    check_formula(fields, "formula", scope_of_measures(study_, first));
     return measure;
   }
 
-  void check_formula(const Fields& fields, const char* key) {
+  void check_formula(const Fields& fields, const char* key, const ExpressionScope& scope = {"x", {}}) {
     try {
-      check_expression(fields.text(key), {"x", {}});
+      check_expression(fields.text(key), scope);
     } catch (const ExpressionError& error) {
       context_.problem(*fields.node(key), error.what());
     }

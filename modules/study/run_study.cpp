@@ -96,7 +96,8 @@ class Task {
   void measure(const Json& summary) {
     result_.measures.clear();
     for (const Measure& measure : study_.measures)
-      if (const double value = evaluate(measure, summary); std::isfinite(value)) result_.measures[measure.name] = value;
+      if (const double value = evaluate(study_, measure, result_.combination, summary); std::isfinite(value))
+        result_.measures[measure.name] = value;
     if (result_.stable) result_.measures[critical_measure] = *result_.stable;
     result_.flags = flags_in(summary);
   }

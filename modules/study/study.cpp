@@ -4,6 +4,8 @@
 #include <cctype>
 #include <set>
 
+#include "experiment/reader.hpp"
+
 namespace mpm::study {
 namespace {
 
@@ -38,6 +40,17 @@ bool Axis::is_numeric() const {
 
 std::string Axis::title() const {
   return with_unit(label, unit);
+}
+
+ExpressionScope scope_of_measures(const Study& study, const std::vector<std::size_t>& choices) {
+  ExpressionScope scope{"x", {}};
+  for (std::size_t k = 0; k < study.axes.size(); ++k) {
+    const Axis& axis = study.axes[k];
+    const bool is_there = !axis.choices.empty() && axis.is_numeric();
+    if (is_there && is_name(axis.name) && is_free_in_formulas(axis.name))
+      scope.constants.emplace_back(axis.name, *axis.choices[choices[k]].number);
+  }
+  return scope;
 }
 
 std::string Measure::title() const {

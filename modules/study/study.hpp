@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "experiment/expression.hpp"
+
 namespace mpm {
 struct Node;
 }
@@ -32,12 +34,12 @@ struct Axis {
   std::string title() const;
 };
 
-/// A number of summary.json, x, or a formula of it.
+/// A number of summary.json, x, or a formula of it and of what the axes set.
 struct Measure {
   std::string name;
   std::string path;  ///< JSON pointer or dotted path into summary.json
   std::string label, unit;
-  std::string formula;  ///< formula of x; empty: x itself
+  std::string formula;  ///< formula over scope_of_measures; empty: x itself
 
   std::string title() const;
 };
@@ -101,6 +103,10 @@ struct Study {
   const Measure* measure(const std::string& name) const;  ///< null when there is none
   std::size_t axis_index(const std::string& name) const;  ///< axes.size() when there is none
 };
+
+/// What the formula of a measure may name: x, its value, and the number of each axis that has a free name and numbers alone, of
+/// the choices of a run, as indices into the axes'.
+ExpressionScope scope_of_measures(const Study& study, const std::vector<std::size_t>& choices);
 
 /// The label with its unit, "label (unit)", or the label alone.
 std::string with_unit(const std::string& label, const std::string& unit);

@@ -278,13 +278,34 @@ TEST_CASE("limits of a study are those of every run, before what it sets and its
 
 TEST_CASE("numbers of a summary by formula and against bounds", "[study]") {
   const Json json{{"error", {{"position", {{"rms", 0.25}}}}}};
-  CHECK(evaluate({"e", "/error/position/rms", "", "", "abs(1-2*x)"}, json) == Approx(0.5));
-  CHECK(std::isnan(evaluate({"e", "/missing", "", "", "1"}, json)));
+  CHECK(evaluate({}, {"e", "/error/position/rms", "", "", "abs(1-2*x)"}, {}, json) == Approx(0.5));
+  CHECK(std::isnan(evaluate({}, {"e", "/missing", "", "", "1"}, {}, json)));
   std::vector<std::string> broken;
   CHECK(all_hold({{"/error/position/rms", 0.2, 0.3}}, json, broken));
   CHECK(!all_hold({{"/error/position/rms", {}, 0.2}, {"/missing", 0.0, {}}}, json, broken));
   CHECK(broken ==
         std::vector<std::string>{"/error/position/rms is 0.25, above 0.2", "/missing is no number in summary.json"});
+}
+
+TEST_CASE("the formula of a measure names the numbers of the axes", "[study]") {
+  const auto with = [](const std::string& formula) {
+    return R"J({"base": "b", "axes": {
+      "/constants/P": {"name": "load", "scale": 100, "values": [1, 2.5]},
+      "/transfer/type": ["pic", "flip"],
+      "depth": {"values": [{"label": "deep", "value": 8, "set": {"/constants/d": 1}}]},
+      "sin": {"values": [{"label": "s", "value": 3, "set": {"/constants/s": 1}}]}},
+      "measure": {"e": {"value": "/sag", "formula": ")J" +
+           formula + R"J("}}})J";
+  };
+  const Study study = read_study_text(with("x/load + depth"), "s.json");
+  const Json summary{{"sag", 5}};
+  for (const Combination& combination : expand(study))
+    CHECK(evaluate(study, study.measures.at(0), combination, summary) ==
+          Approx(5 / (combination.choices[0] == 0 ? 1 : 2.5) + 8));
+  CHECK(evaluate(study, read_study_text(with("sin(0) + x"), "s.json").measures.at(0), expand(study)[0], summary) == 5);
+  // An axis without numbers has no place in a formula, nor has one of another name.
+  CHECK(mistakes(with("x/type")).find("unknown name \"type\"; known:") != std::string::npos);
+  CHECK(mistakes(with("x/laod")).find("did you mean \"load\"") != std::string::npos);
 }
 
 TEST_CASE("study.json keeps what advice needs", "[study]") {
