@@ -2,6 +2,7 @@
 // that of logistic regression against the same sum of squares minimized by Levenberg and Marquardt's method of MINPACK.
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <random>
 #include <unsupported/Eigen/NonLinearOptimization>
 
@@ -14,24 +15,27 @@ namespace {
 
 using namespace mpm;
 
-/// Particles of one body as a host hands them over.
+/// Particles of one body as a host hands them over: lanes beyond them repeat the first, with no weight.
 struct Cloud {
   std::vector<double> position, weight;
-  std::uint32_t count;
+  std::uint32_t count, stride;
 
   explicit Cloud(const std::vector<Vec<3, double>>& places, std::mt19937* random = nullptr)
-      : position(3 * places.size()), weight(places.size(), 0.5), count(static_cast<std::uint32_t>(places.size())) {
+      : count(static_cast<std::uint32_t>(places.size())), stride((count + MPM_LANES - 1) / MPM_LANES * MPM_LANES) {
+    position.resize(std::size_t{3} * stride), weight.resize(stride);
     std::uniform_real_distribution<double> share(0.1, 1);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      for (std::size_t i = 0; i < 3; ++i) position[i * places.size() + k] = places[k][static_cast<int>(i)];
-      if (random) weight[k] = share(*random);
+    for (std::size_t k = 0; k < stride; ++k) {
+      const bool is_one = k < places.size();
+      for (std::size_t i = 0; i < 3; ++i) position[i * stride + k] = places[is_one ? k : 0][static_cast<int>(i)];
+      if (is_one) weight[k] = random ? share(*random) : 0.5;
     }
   }
+  double place(int axis, std::uint32_t k) const { return position[static_cast<std::size_t>(axis) * stride + k]; }
 };
 
 template <class Regression, int D>
 bool regression(double penalty, const Cloud& a, const Cloud& b, double* normal) {
-  const mpm_normal_points points{a.count,           a.count,         b.count,         b.count, a.position.data(),
+  const mpm_normal_points points{a.count,           a.stride,        b.count,         b.stride, a.position.data(),
                                  b.position.data(), a.weight.data(), b.weight.data(), normal};
   return Regression::template find<D>({penalty}, sdk::clouds_of(points), normal);
 }
@@ -46,7 +50,7 @@ Eigen::VectorXd least_squares(double penalty, const Cloud& a, const Cloud& b) {
   for (const Cloud* cloud : {&a, &b})
     for (std::uint32_t k = 0; k < cloud->count; ++k, ++row) {
       const double root = std::sqrt(cloud->weight[k]);
-      for (int i = 0; i < D; ++i) A(row, i) = root * cloud->position[static_cast<std::size_t>(i) * cloud->count + k];
+      for (int i = 0; i < D; ++i) A(row, i) = root * cloud->place(i, k);
       A(row, D) = root;
       labels(row) = cloud == &a ? -root : root;
     }
@@ -91,7 +95,7 @@ struct LogisticResiduals {
     for (const Cloud* cloud : {&a, &b})
       for (std::uint32_t k = 0; k < cloud->count; ++k, ++row) {
         Eigen::VectorXd x = Eigen::VectorXd::Ones(D + 1);
-        for (int i = 0; i < D; ++i) x(i) = cloud->position[static_cast<std::size_t>(i) * cloud->count + k];
+        for (int i = 0; i < D; ++i) x(i) = cloud->place(i, k);
         visit(row, std::sqrt(cloud->weight[k]), cloud == &a ? -1.0 : 1.0, plane.dot(x), x);
       }
   }
@@ -113,6 +117,13 @@ Eigen::VectorXd logistic_fit(double penalty, const Cloud& a, const Cloud& b) {
   const Eigen::VectorXd plane = logistic_plane<D>(penalty, a, b, Eigen::VectorXd::Zero(D + 1));
   return Eigen::VectorXd(plane.head(D)).normalized();
 }
+
+struct Moments {
+  template <class S>
+  void operator()(const Vec<3, S>& place, const S& weight, S* values) const {
+    values[0] = weight, values[1] = weight * place[0] * place[2], values[2] = weight * place[1];
+  }
+};
 
 /// The quadratic B-spline of a node, x cells from it.
 double spline(double x) {
@@ -166,7 +177,7 @@ TEST_CASE("logistic regression has that normal too where weights differ by thous
       for (int i = 0; i < 30; ++i)
         places.push_back({{side * 0.6 * (1 + number(random)), 1.5 * number(random), 1.5 * number(random)}});
       clouds.emplace_back(places);
-      for (double& weight : clouds.back().weight) weight = std::exp(4 * number(random));
+      for (std::uint32_t i = 0; i < clouds.back().count; ++i) clouds.back().weight[i] = std::exp(4 * number(random));
     }
     const double penalty = k % 2 ? 1e-2 : 1e-6;
     double normal[3] = {};
@@ -194,7 +205,8 @@ TEST_CASE("logistic regression has that normal too where a plane parts two latti
         places[d > 0].push_back({{x, y, 0}}), weights[d > 0].push_back(weight);
       }
     Cloud a(places[0]), b(places[1]);
-    a.weight = weights[0], b.weight = weights[1];
+    std::copy(weights[0].begin(), weights[0].end(), a.weight.begin());
+    std::copy(weights[1].begin(), weights[1].end(), b.weight.begin());
     double normal[3] = {};
     CAPTURE(k, a.count, b.count);
     REQUIRE(regression<LogisticRegression, 2>(1e-6, a, b, normal));
@@ -212,4 +224,23 @@ TEST_CASE("where particles leave a direction open, the penalty of linear regress
   REQUIRE(regression<LinearRegression, 2>(1e-6, a, b, normal));
   CHECK(normal[0] == Approx(2 / std::sqrt(5)).epsilon(1e-9));
   CHECK(normal[1] == Approx(1 / std::sqrt(5)).epsilon(1e-9));
+}
+
+TEST_CASE("a sum over a cloud in lanes is that of its particles one by one") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const int particles : {1, 2, 15, 16, 17, 40}) {
+    std::vector<Vec<3, double>> places;
+    for (int k = 0; k < particles; ++k) places.push_back({{number(random), number(random), number(random)}});
+    const Cloud of(places, &random);
+    const sdk::CloudInLanes cloud{of.position.data(), of.weight.data(), of.count, of.stride};
+    double sums[3] = {1, 2, 3}, expected[3] = {1, 2, 3};
+    cloud.add(Moments(), sums);
+    cloud.for_each([&](const Vec<3, double>& place, double weight) {
+      double values[3];
+      Moments()(place, weight, values);
+      for (int n = 0; n < 3; ++n) expected[n] += values[n];
+    });
+    for (int n = 0; n < 3; ++n) CHECK(sums[n] == Approx(expected[n]).epsilon(1e-14).margin(1e-14));
+  }
 }

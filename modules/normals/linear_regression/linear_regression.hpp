@@ -15,18 +15,31 @@ struct LinearRegression {
     double penalty;  ///< cells^2, beside the weights of the particles
   };
 
-  /// Adds one body's particles to the equations of slope and offset.
+  /// What a particle adds to the matrix, row by row up to the diagonal: the last row is that of the offset.
+  template <int D>
+  struct Terms {
+    static constexpr int rows = D + 1, count = rows * (rows + 1) / 2;
+
+    template <class S>
+    MPM_HD void operator()(const Vec<3, S>& place, const S& weight, S* values) const {
+      for (int i = 0; i < rows; ++i) {
+        const S along = i < D ? weight * place[i] : weight;
+        for (int j = 0; j <= i; ++j) *values++ = j < D ? along * place[j] : along;
+      }
+    }
+  };
+  /// Adds one body's particles to the equations of slope and offset, whose right side is the last row times the labels.
   template <int D, class Cloud>
   MPM_HD static void add(const Cloud& cloud, double label, double (&m)[D + 1][D + 1], double (&rhs)[D + 1]) {
-    cloud.for_each([&](const Vec<3, double>& place, double weight) {
-      double row[D + 1];
-      for (int i = 0; i < D; ++i) row[i] = place[i];
-      row[D] = 1;
-      for (int i = 0; i <= D; ++i) {
-        rhs[i] += weight * label * row[i];
-        for (int j = 0; j <= D; ++j) m[i][j] += weight * row[i] * row[j];
+    double values[Terms<D>::count] = {};
+    cloud.add(Terms<D>(), values);
+    const double* value = values;
+    for (int i = 0; i <= D; ++i)
+      for (int j = 0; j <= i; ++j, ++value) {
+        m[i][j] += *value;
+        if (i != j) m[j][i] += *value;
+        if (i == D) rhs[j] += label * *value;
       }
-    });
   }
 
   /// Minimizes sum w (c - b - s . x)^2 + penalty s^2 over the slope s, 1/cell, and b: s points to the labels +1, of b.

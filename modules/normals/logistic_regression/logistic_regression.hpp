@@ -18,55 +18,77 @@ struct LogisticRegression {
   /// A plane: slope along the axes, 1/cell, then the offset.
   template <int D>
   using Plane = Vec<D + 1, double>;
-  /// The sums of one plane: what is minimized, half its negative gradient and the matrix of a step.
+  static constexpr int first_of_row(int row) { return 1 + row * (row + 3) / 2; }
+  /// The sums of one plane: what is minimized, then for each row half its negative gradient and half the second derivative up
+  /// to the diagonal.
   template <int D>
   struct Sums {
-    double cost = 0, rhs[D + 1] = {}, m[D + 1][D + 1] = {};
-  };
+    static constexpr int rows = D + 1, count = first_of_row(rows);
+    double values[count] = {};
 
+    MPM_HD double cost() const { return values[0]; }
+    MPM_HD void add_penalty(double penalty, const Plane<D>& plane) {
+      for (int i = 0; i < D; ++i) {
+        values[0] += penalty * plane[i] * plane[i];
+        values[first_of_row(i)] -= penalty * plane[i];
+        values[first_of_row(i) + 1 + i] += penalty;
+      }
+    }
+    /// Finds Newton's step; false where the matrix is not positive definite.
+    MPM_HD bool find_step(double (&step)[rows]) const {
+      double m[rows][rows];
+      for (int i = 0; i < rows; ++i) {
+        step[i] = values[first_of_row(i)];
+        for (int j = 0; j < rows; ++j) m[i][j] = values[j <= i ? first_of_row(i) + 1 + j : first_of_row(j) + 1 + i];
+      }
+      return solve_symmetric(m, step);
+    }
+  };
   /// What a matrix has of the curvature f'' = -f f': all of it, as Newton's has, or of each particle what is not negative,
   /// with which every step goes down. Of particles on their own body's side that is all as well.
   enum class Curvature { whole, not_negative };
 
-  /// Adds one body's particles: w (c - f)^2 with f = 2 / (1 + exp(-z)) - 1, z = b + s . x. The matrix is half the second
-  /// derivative.
-  template <int D, class Cloud>
-  MPM_HD static void add(const Cloud& cloud, double label, const Plane<D>& plane, Curvature curvature, Sums<D>& sums) {
-    cloud.for_each([&](const Vec<3, double>& place, double weight) {
-      double row[D + 1], z = plane[D];
-      for (int i = 0; i < D; ++i) row[i] = place[i], z += plane[i] * row[i];
-      row[D] = 1;
-      const double f = 2 / (1 + exp(-z)) - 1, slope = 0.5 * (1 - f * f), error = label - f, bend = error * f * slope;
-      const double second = slope * slope + (curvature == Curvature::whole ? bend : max(bend, 0.0));
-      sums.cost += weight * error * error;
+  /// What a particle adds to the sums: w (c - f)^2 with f = 2 / (1 + exp(-z)) - 1, z = b + s . x.
+  template <int D>
+  struct Terms {
+    Plane<D> plane;
+    double label;
+    Curvature curvature;
+
+    template <class S>
+    MPM_HD void operator()(const Vec<3, S>& place, const S& weight, S* values) const {
+      S z = S(plane[D]);
+      for (int i = 0; i < D; ++i) z = z + plane[i] * place[i];
+      const S f = 2.0 / (1.0 + exp(-z)) - 1.0, slope = 0.5 * (1.0 - f * f), error = label - f;
+      const S bend = error * f * slope, kept = curvature == Curvature::whole ? bend : max(bend, S(0.0));
+      const S pull = weight * error * slope, second = weight * (slope * slope + kept);
+      values[0] = weight * error * error;
       for (int i = 0; i <= D; ++i) {
-        sums.rhs[i] += weight * error * slope * row[i];
-        for (int j = 0; j <= i; ++j) sums.m[i][j] += weight * second * row[i] * row[j];
+        S* const row = values + first_of_row(i);
+        const S along = i < D ? second * place[i] : second;
+        row[0] = i < D ? pull * place[i] : pull;
+        for (int j = 0; j <= i; ++j) row[1 + j] = j < D ? along * place[j] : along;
       }
-    });
-  }
+    }
+  };
   template <int D, class Points>
   MPM_HD static Sums<D> sums_of(double penalty, const Points& points, const Plane<D>& plane, Curvature curvature) {
     Sums<D> sums;
-    add<D>(points.a, -1, plane, curvature, sums);
-    add<D>(points.b, 1, plane, curvature, sums);
-    for (int i = 0; i <= D; ++i)
-      for (int j = 0; j < i; ++j) sums.m[j][i] = sums.m[i][j];
-    add_penalty<D>(penalty, plane, sums);
+    points.a.add(Terms<D>{plane, -1, curvature}, sums.values);
+    points.b.add(Terms<D>{plane, 1, curvature}, sums.values);
+    sums.add_penalty(penalty, plane);
     return sums;
-  }
-  template <int D>
-  MPM_HD static void add_penalty(double penalty, const Plane<D>& plane, Sums<D>& sums) {
-    for (int i = 0; i < D; ++i) {
-      sums.cost += penalty * plane[i] * plane[i];
-      sums.rhs[i] -= penalty * plane[i], sums.m[i][i] += penalty;
-    }
   }
 
   template <int D>
-  MPM_HD static Plane<D> moved(Plane<D> plane, const double (&by)[D + 1]) {
-    for (int i = 0; i <= D; ++i) plane[i] += by[i];
+  MPM_HD static Plane<D> moved(Plane<D> plane, const double (&by)[D + 1], double share) {
+    for (int i = 0; i <= D; ++i) plane[i] += share * by[i];
     return plane;
+  }
+  /// Whether a step leads to no larger a sum, to rounding.
+  MPM_HD static bool goes_down(double to, double from) {
+    constexpr double rounding = 1e-12;
+    return to <= from * (1 + rounding);
   }
   template <int D>
   MPM_HD static Vec<D, double> slope_of(const Plane<D>& plane) {
@@ -75,41 +97,37 @@ struct LogisticRegression {
     return slope;
   }
 
-  /// Newton's steps, damped as Levenberg does, until the normal hardly turns. The first, from the plane z = 0, where f has
-  /// the slope 1/2, is linear regression. Where a plane parts the bodies the slope has a long way to grow, and all but the
+  /// Newton's steps, each halved until it goes down, until the normal hardly turns. The first, from the plane z = 0, where f
+  /// has the slope 1/2, is linear regression. Where a plane parts the bodies the slope has a long way to grow, and all but the
   /// particles next to the plane have their whole error behind them: the penalty begins high and falls with each step, so
   /// that a step finds the plane next to the one before; it falls faster where the normal does not turn.
   template <int D, class Points>
   MPM_HD static Plane<D> fitted(const Parameters& p, const Points& points) {
-    constexpr int most_rounds = 200;
-    constexpr double little = 1e-5, first_damping = 1e-12, most_damping = 1e12;
-    constexpr double first_penalty = 1, kept = 0.4, kept_at_rest = 0.01;
+    constexpr int most_sums = 200;
+    constexpr double little = 1e-5, least_share = 1e-6, first_penalty = 1, kept = 0.4, kept_at_rest = 0.01;
     Plane<D> plane{};
-    double penalty = max(first_penalty, p.penalty);
+    double penalty = max(first_penalty, p.penalty), share = 1, step[D + 1];
     Sums<D> sums = sums_of<D>(penalty, points, plane, Curvature::not_negative);
     Vec<D, double> direction{};
-    double damping = 0, scale = 0;
-    for (int i = 0; i <= D; ++i) scale += sums.m[i][i];
-    for (int round = 0; round < most_rounds && damping < most_damping; ++round) {
-      Sums<D> system = sums;
-      for (int i = 0; i <= D; ++i) system.m[i][i] += damping * scale;
-      const bool solved = solve_symmetric(system.m, system.rhs);
-      const Plane<D> next = solved ? moved<D>(plane, system.rhs) : plane;
+    if (!sums.find_step(step)) return plane;
+    for (int count = 1; count < most_sums && share > least_share; ++count) {
+      const Plane<D> next = moved<D>(plane, step, share);
       const Sums<D> there = sums_of<D>(penalty, points, next, Curvature::not_negative);
-      if (!(there.cost < sums.cost)) {
-        damping = max(10 * damping, first_damping);
+      if (!goes_down(there.cost(), sums.cost())) {
+        share *= 0.5;
         continue;
       }
-      plane = next, sums = there, damping *= 0.1;
+      plane = next, sums = there;
       Vec<D, double> turned = slope_of<D>(plane);
       make_unit(turned);
       double change = 0;
       for (int i = 0; i < D; ++i) change = max(change, abs(turned[i] - direction[i]));
       direction = turned;
-      if (penalty == p.penalty && change < little) break;
+      if (penalty == p.penalty && share == 1 && change < little) break;
       const double less = max((change < little ? kept_at_rest : kept) * penalty, p.penalty);
-      add_penalty<D>(less - penalty, plane, sums);
-      penalty = less;
+      sums.add_penalty(less - penalty, plane);
+      penalty = less, share = 1;
+      if (!sums.find_step(step)) break;
     }
     return plane;
   }
@@ -118,15 +136,13 @@ struct LogisticRegression {
   template <int D, class Points>
   MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     constexpr int steps = 4;
-    constexpr double rounding = 1e-12;
     Plane<D> plane = fitted<D>(p, points);
     Sums<D> sums = sums_of<D>(p.penalty, points, plane, Curvature::whole);
-    for (int step = 0; step < steps; ++step) {
-      Sums<D> system = sums;
-      if (!solve_symmetric(system.m, system.rhs)) break;  // no minimum is near
-      const Plane<D> next = moved<D>(plane, system.rhs);
+    double step[D + 1];
+    for (int count = 0; count < steps && sums.find_step(step); ++count) {
+      const Plane<D> next = moved<D>(plane, step, 1);
       const Sums<D> there = sums_of<D>(p.penalty, points, next, Curvature::whole);
-      if (!(there.cost <= sums.cost * (1 + rounding))) break;
+      if (!goes_down(there.cost(), sums.cost())) break;
       plane = next, sums = there;
     }
     Vec<D, double> direction = slope_of<D>(plane);

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
+#include "kernel/lanes.hpp"
 #include "kernel/points.hpp"
 #include "plugin/tables.hpp"
 
@@ -19,6 +21,21 @@ struct CloudInLanes {
   template <class Visit>
   void for_each(Visit visit) const {
     for (std::uint32_t i = 0; i < count; ++i) visit((*this)[i], weights[i]);
+  }
+  template <int N, class Term>
+  void add(Term term, double (&sums)[N]) const {
+    using Pack = Lanes<double>;
+    static_assert(MPM_LANES % Pack::width == 0);
+    Pack all[N];
+    for (Pack& sum : all) sum = Pack(0.0);
+    for (std::uint32_t i = 0; i < stride; i += Pack::width) {
+      const Vec<3, Pack> place{pack_at(values + i), pack_at(values + stride + i), pack_at(values + 2 * stride + i)};
+      Pack of_these[N];
+      term(place, pack_at(weights + i), of_these);
+      for (int n = 0; n < N; ++n) all[n] = all[n] + of_these[n];
+    }
+    for (int n = 0; n < N; ++n)
+      for (int lane = 0; lane < Pack::width; ++lane) sums[n] += all[n][lane];
   }
   Vec<3, double> middle() const {
     Vec<3, double> sum{};
@@ -44,6 +61,14 @@ struct CloudInLanes {
     for (std::uint32_t k = 1; k < lanes; ++k)
       if (most[k] > most[best] || (most[k] == most[best] && at[k] < at[best])) best = k;
     return (*this)[static_cast<std::uint32_t>(at[best])];
+  }
+
+ private:
+  /// The values of several particles, which need not lie as a vector does.
+  static Lanes<double> pack_at(const double* of) {
+    Lanes<double> pack;
+    std::memcpy(&pack.v, of, sizeof pack.v);
+    return pack;
   }
 };
 

@@ -191,6 +191,14 @@ class NodeCloud {
       visit(place, weight);
     });
   }
+  template <int N, class Term>
+  MPM_HD void add(Term term, double (&sums)[N]) const {
+    for_each([&](const Vec<3, double>& place, double weight) {
+      double values[N];
+      term(place, weight, values);
+      for (int n = 0; n < N; ++n) sums[n] += values[n];
+    });
+  }
   MPM_HD Vec<3, double> middle() const {
     Vec<3, double> sum{};
     for_each_place([&](const Vec<3, double>& place) {
