@@ -19,9 +19,8 @@ MPM_HD int last_that_sees(double x, double reach) {
 
 /// The weight of the quadratic B-spline along an axis, `x` from its node: what a particle counts in a regression.
 MPM_HD double quadratic_weight(double x) {
-  const double distance = abs(x);
-  if (distance >= 1.5) return 0;
-  return distance < 0.5 ? 0.75 - distance * distance : 0.5 * (1.5 - distance) * (1.5 - distance);
+  const double distance = abs(x), left = 1.5 - min(distance, 1.5);
+  return distance < 0.5 ? 0.75 - distance * distance : 0.5 * left * left;
 }
 
 /// Half of what a particle, an ellipsoid with these semi-sides as conjugate radii, extends along a unit normal.

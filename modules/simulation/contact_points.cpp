@@ -11,7 +11,6 @@ namespace mpm {
 namespace {
 
 constexpr int cube_side = 4;  // cells
-constexpr std::uint32_t nobody = ~0u;
 
 /// A number for three coordinates; those of a domain's nodes differ in the lowest 21 bits.
 std::uint64_t key_of(const std::array<int, 3>& at) {
@@ -81,13 +80,15 @@ double ContactPoints::farthest_seen() const {
 }
 
 bool ContactPoints::look_around(const Vector3& low, const Vector3& high) {
-  window_.nodes.clear();
+  window_.particles.clear();
   if (count_ == 0) return false;
-  bool images = false, any = false;
+  bool any = false;
+  window_.near_periodic = window_.near_mirror = false;
   std::array<int, 3> first{}, last{};
   std::size_t size = 1;
   for (int axis = 0; axis < dimension_; ++axis) {
-    images = images || near_face(axis, low[axis], high[axis], true);
+    window_.near_periodic |= near_face(axis, low[axis], high[axis], true);
+    window_.near_mirror |= near_face(axis, low[axis], high[axis], false);
     window_.low[axis] = static_cast<int>(std::floor(low[axis] - farthest_seen()));
     window_.high[axis] = static_cast<int>(std::ceil(high[axis] + farthest_seen()));
     first[axis] = cube_of(window_.low[axis]), last[axis] = cube_of(window_.high[axis]);
@@ -98,12 +99,12 @@ bool ContactPoints::look_around(const Vector3& low, const Vector3& high) {
     if (found == cubes_.end()) return;
     for (const std::uint32_t node : found->second) {
       if (!window_.holds(nodes_[node].at)) continue;
-      if (!any) window_.nodes.assign(size, nobody);
-      window_.nodes[window_.place(nodes_[node].at)] = node;
+      if (!any) window_.particles.assign(size, nullptr);
+      window_.particles[window_.place(nodes_[node].at)] = nodes_[node].particles.data();
       any = true;
     }
   });
-  return images || any;
+  return window_.near_periodic || any;
 }
 
 /// Whether an image beyond a face of an axis may be seen of what lies between low and high.
@@ -119,7 +120,7 @@ bool ContactPoints::near_face(int axis, double low, double high, bool periodic) 
 /// particle too, which is nearer. Beside a periodic face nodes are asked for by their coordinates: they may lie at either
 /// end of the domain, outside the window.
 void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides) {
-  for (int axis = 0; axis < dimension_; ++axis)
+  for (int axis = 0; window_.near_periodic && axis < dimension_; ++axis)
     if (near_face(axis, x[axis], x[axis], true)) return add_images(field, x, semi_sides, true);
   const auto number = static_cast<std::uint32_t>(places_.size());
   std::array<int, 3> low{}, high{};
@@ -129,16 +130,15 @@ void ContactPoints::add(int field, const Vector3& x, const SemiSides& semi_sides
     high[axis] = std::min(window_.high[axis], last_that_sees(x[axis], reach));
   }
   bool seen = false;
-  if (!window_.nodes.empty())
-    for_each_triple(low, high, [&](const std::array<int, 3>& at) {
-      const std::uint32_t node = window_.nodes[window_.place(at)];
-      if (node == nobody) return;
-      nodes_[node].particles[static_cast<std::size_t>(field)].push_back(number);
-      seen = true;
-    });
+  for (int i = low[0]; !window_.particles.empty() && i <= high[0]; ++i)
+    for (int j = low[1]; j <= high[1]; ++j) {
+      std::vector<std::uint32_t>** const row = window_.particles.data() + window_.place({i, j, low[2]});
+      for (int k = 0; k <= high[2] - low[2]; ++k)
+        if (row[k]) row[k][field].push_back(number), seen = true;
+    }
   if (!seen) return;
   keep(x, semi_sides);
-  for (int axis = 0; axis < dimension_; ++axis)
+  for (int axis = 0; window_.near_mirror && axis < dimension_; ++axis)
     if (near_face(axis, x[axis], x[axis], false)) return add_images(field, x, semi_sides, false);
 }
 
@@ -210,17 +210,18 @@ void PointRow::take(const std::vector<Vector3>& places, const std::vector<std::u
                     const std::array<int, 3>& node, int dimension) {
   count = static_cast<std::uint32_t>(numbers.size());
   stride = (count + MPM_LANES - 1) / MPM_LANES * MPM_LANES;
-  positions.resize(3 * static_cast<std::size_t>(stride)), weights.assign(stride, 0.0);
+  positions.resize(3 * static_cast<std::size_t>(stride)), weights.assign(stride, 1.0);
+  double *const x = positions.data(), *const y = x + stride, *const z = y + stride;
   for (std::uint32_t i = 0; i < stride; ++i) {
-    const Vector3& x = places[numbers[i < count ? i : 0]];
-    double weight = 1;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double from_node = x[c] - node[c];
-      positions[c * stride + i] = from_node;
-      if (static_cast<int>(c) < dimension) weight *= quadratic_weight(from_node);
-    }
-    if (i < count) weights[i] = weight;
+    const Vector3& place = places[numbers[i < count ? i : 0]];
+    x[i] = place[0] - node[0], y[i] = place[1] - node[1], z[i] = place[2] - node[2];
   }
+  double* const weight = weights.data();
+  for (int c = 0; c < dimension; ++c) {
+    const double* const along = x + static_cast<std::size_t>(c) * stride;
+    for (std::uint32_t i = 0; i < stride; ++i) weight[i] *= quadratic_weight(along[i]);
+  }
+  for (std::uint32_t i = count; i < stride; ++i) weight[i] = 0;
 }
 
 mpm_normal_points points_of(const PointRow& a, const PointRow& b, Vector3& normal) {

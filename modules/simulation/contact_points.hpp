@@ -90,7 +90,10 @@ class ContactPoints {
   /// The nodes around a place, each by its coordinates: what look_around has found.
   struct Window {
     std::array<int, 3> low{}, high{};
-    std::vector<std::uint32_t> nodes;  ///< their numbers; empty where there is none at all
+    bool near_periodic = false,
+         near_mirror = false;  ///< whether an image beyond such a face may be seen of what lies there
+    std::vector<std::vector<std::uint32_t>*>
+        particles;  ///< Node::particles of each; empty where there is no node at all
 
     std::size_t side(int axis) const { return static_cast<std::size_t>(high[axis]) - low[axis] + 1; }
     bool holds(const std::array<int, 3>& at) const {

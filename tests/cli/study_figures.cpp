@@ -197,9 +197,10 @@ class Choice {
 /// The chosen combinations run by the program, among all of the study, the others as not run. They stand below `folder`.
 study::Results run_chosen(const study::Study& study, std::vector<study::Combination> combinations,
                           const std::vector<std::size_t>& chosen, const Folder& folder) {
-  // The same study with one axis, whose values are the chosen combinations.
+  // The same study with one axis, whose values are the chosen combinations. Formulas of measures name the study's own axes.
   study::Study few = study;
   few.overrides.clear();
+  for (study::Measure& measure : few.measures) measure.formula.clear();
   few.axes = {study::Axis{"combination", "combination", "", {}, {}}};
   for (const std::size_t k : chosen)
     few.axes[0].choices.push_back({combinations[k].name, std::nullopt, combinations[k].overrides});
@@ -216,8 +217,13 @@ study::Results run_chosen(const study::Study& study, std::vector<study::Combinat
   }
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     study::Combination combination = std::move(results.results[chosen[k]].combination);
-    results.results[chosen[k]] = std::move(ran.results[k]);
-    results.results[chosen[k]].combination = std::move(combination);
+    study::Result& result = results.results[chosen[k]] = std::move(ran.results[k]);
+    result.combination = std::move(combination);
+    const fs::path summary = folder.path() / result.folder / "summary.json";
+    for (const study::Measure& measure : study.measures)
+      if (result.measures.contains(measure.name) && !measure.formula.empty())
+        result.measures[measure.name] =
+            study::evaluate(study, measure, result.combination, Json::parse(slurp(summary)));
   }
   return results;
 }
