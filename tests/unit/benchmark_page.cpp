@@ -218,7 +218,7 @@ TEST_CASE("the numbers of what contact costs are those of its tables", "[docs]")
                        cost_in("block_2d", option) / cost_in("block_2d", other)};
   };
   says("Linear regression comes to # in the cube and # in the block", over("contact, linear regression", "contact"));
-  says("takes up to 200 rounds at each node, to # and #", over("contact, logistic regression", "contact"));
+  says("ten to thirty times, comes to # and #", over("contact, logistic regression", "contact"));
   says("blocks of air between them cost # and # of what they cost without",
        over("contact, bodies apart", "bodies apart"));
   for (const double cost : both("contact")) CHECK(cost <= 2);
@@ -229,8 +229,7 @@ TEST_CASE("the numbers of what contact costs are those of its tables", "[docs]")
       largest = larger(largest, std::stod(row[5]));
     }
   says("rounds spread by up to # %, those of logistic regression by # %", {spread, spread_of_logistic});
-  page.add_given({"29 November 2026", "to cost at most 2 and does", "at most 1.5 of the default normal",
-                  "takes up to 200 rounds"});
+  page.add_given({"30\nNovember 2026", "to cost at most 2 and does", "at most 1.5 of the default normal", "seen by 27 nodes"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
 }
 
