@@ -22,8 +22,12 @@ double evaluate(const Study& study, const Measure& measure, const Combination& c
   const double x = output::number_at(summary, measure.path);
   if (measure.formula.empty() || !std::isfinite(x)) return x;
   const VectorExpression::Term term = measure.formula;
-  const VectorExpression formula(std::span(&term, 1), scope_of_measures(study, combination.choices));
-  return formula({x, 0, 0}, {x, 0, 0}, 0)[0];
+  try {
+    const VectorExpression formula(std::span(&term, 1), scope_of_measures(study, combination.choices));
+    return formula({x, 0, 0}, {x, 0, 0}, 0)[0];
+  } catch (const ExpressionError&) {  // checked when read: without x, it has no finite value of these axes
+    return not_measured;
+  }
 }
 
 bool all_hold(const std::vector<Bound>& bounds, const Json& summary, std::vector<std::string>& broken) {

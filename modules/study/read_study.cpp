@@ -251,15 +251,23 @@ class StudyReader {
     if (fields.given("label")) measure.label = fields.text("label");
     if (!fields.given("formula")) return measure;
     const std::vector<std::size_t> first(study_.axes.size(), 0);
-    check_formula(fields, "formula", scope_of_measures(study_, first));
+    const ExpressionScope scope = scope_of_measures(study_, first);
+    std::string unnamed;
+    for (const Axis& axis : study_.axes) {
+      const auto is_it = [&](const auto& constant) { return constant.first == axis.name; };
+      if (std::none_of(scope.constants.begin(), scope.constants.end(), is_it))
+        unnamed += (unnamed.empty() ? "; a formula cannot name the axis " : ", ") + in_quotes(axis.name);
+    }
+    check_formula(fields, "formula", scope, unnamed);
     return measure;
   }
 
-  void check_formula(const Fields& fields, const char* key, const ExpressionScope& scope = {"x", {}}) {
+  void check_formula(const Fields& fields, const char* key, const ExpressionScope& scope = {"x", {}},
+                     const std::string& more = "") {
     try {
       check_expression(fields.text(key), scope);
     } catch (const ExpressionError& error) {
-      context_.problem(*fields.node(key), error.what());
+      context_.problem(*fields.node(key), error.what() + more);
     }
   }
 

@@ -244,3 +244,19 @@ TEST_CASE("a sum over a cloud in lanes is that of its particles one by one") {
     for (int n = 0; n < 3; ++n) CHECK(sums[n] == Approx(expected[n]).epsilon(1e-14).margin(1e-14));
   }
 }
+
+TEST_CASE("where no direction tells bodies apart, or one of them has no weight, regression has no normal") {
+  const std::vector<Vec<3, double>> places{{{0.5, 0.3, 0.1}}, {{-0.6, 0.4, 0}}, {{1, -0.2, -0.3}}, {{0.2, 0.9, 0.6}}};
+  Cloud far({{{-1.7, 0, 0}}, {{-1.6, 0.2, 0}}});
+  std::fill(far.weight.begin(), far.weight.end(), 0.0);
+  double normal[3] = {};
+  for (const double penalty : {1e-12, 1e-6, 1.0})
+    for (const auto& [a, b] :
+         {std::pair(Cloud(places), Cloud(places)), std::pair(far, Cloud(places)), std::pair(Cloud(places), far)}) {
+      CAPTURE(penalty, a.count, b.count);
+      CHECK_FALSE(regression<LinearRegression, 2>(penalty, a, b, normal));
+      CHECK_FALSE(regression<LinearRegression, 3>(penalty, a, b, normal));
+      CHECK_FALSE(regression<LogisticRegression, 2>(penalty, a, b, normal));
+      CHECK_FALSE(regression<LogisticRegression, 3>(penalty, a, b, normal));
+    }
+}

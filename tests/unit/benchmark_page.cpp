@@ -229,8 +229,7 @@ TEST_CASE("the numbers of what contact costs are those of its tables", "[docs]")
       largest = larger(largest, std::stod(row[5]));
     }
   says("rounds spread by up to # %, those of logistic regression by # %", {spread, spread_of_logistic});
-  page.add_given(
-      {"30\nNovember 2026", "to cost at most 2 and does", "at most 1.5 of the default normal", "seen by 27 nodes"});
+  page.add_given({"30\nNovember 2026", "to cost at most 2 and does", "at most 1.5 of the default normal"});
   CHECK(page.numbers_of_nobody() == std::vector<std::string>{});
 }
 

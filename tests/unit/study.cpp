@@ -305,6 +305,10 @@ TEST_CASE("the formula of a measure names the numbers of the axes", "[study]") {
   CHECK(evaluate(study, read_study_text(with("sin(0) + x"), "s.json").measures.at(0), expand(study)[0], summary) == 5);
   // An axis without numbers has no place in a formula, nor has one of another name.
   CHECK(mistakes(with("x/type")).find("unknown name \"type\"; known:") != std::string::npos);
+  CHECK(mistakes(with("x/type")).find("a formula cannot name the axis \"/transfer/type\", \"sin\"") !=
+        std::string::npos);
+  CHECK(std::isnan(
+      evaluate(study, read_study_text(with("1/(load-1)"), "s.json").measures.at(0), expand(study)[0], summary)));
   CHECK(mistakes(with("x/laod")).find("did you mean \"load\"") != std::string::npos);
 }
 

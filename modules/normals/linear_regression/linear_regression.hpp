@@ -58,7 +58,10 @@ struct LinearRegression {
     if (!solve_symmetric(turned, unknown)) return false;
     Vec<D, double> slope;
     for (int i = 0; i < D; ++i) slope[i] = unknown[D - i];
-    if (!(make_unit(slope) > 0)) return false;
+    constexpr double least_slope = 1e-9;  // rounding makes no more of labels that follow no direction
+    double square = 0;
+    for (int i = 0; i < D; ++i) square += slope[i] * slope[i];
+    if (!(square > least_slope * least_slope) || !(make_unit(slope) > 0)) return false;
     for (int i = 0; i < D; ++i) normal[i] = slope[i];
     return true;
   }

@@ -18,7 +18,7 @@ struct LogisticRegression {
   /// A plane: slope along the axes, 1/cell, then the offset.
   template <int D>
   using Plane = Vec<D + 1, double>;
-  static constexpr int first_of_row(int row) { return 1 + row * (row + 3) / 2; }
+  MPM_HD static constexpr int first_of_row(int row) { return 1 + row * (row + 3) / 2; }
   /// The sums of one plane: what is minimized, then for each row half its negative gradient and half the second derivative up
   /// to the diagonal.
   template <int D>
@@ -97,8 +97,8 @@ struct LogisticRegression {
     return slope;
   }
 
-  /// Newton's steps, each halved until it goes down, until the normal hardly turns. The first, from the plane z = 0, where f
-  /// has the slope 1/2, is linear regression. Where a plane parts the bodies the slope has a long way to grow, and all but the
+  /// Newton's steps, each halved until it goes down, until it hardly goes down and the normal hardly turns. The first, from
+  /// the plane z = 0, where f has the slope 1/2, is linear regression. Where a plane parts the bodies the slope has a long way to grow, and all but the
   /// particles next to the plane have their whole error behind them: the penalty begins high and falls with each step, so
   /// that a step finds the plane next to the one before; it falls faster where the normal does not turn.
   template <int D, class Points>
@@ -109,7 +109,9 @@ struct LogisticRegression {
     double penalty = max(first_penalty, p.penalty), share = 1, step[D + 1];
     Sums<D> sums = sums_of<D>(penalty, points, plane, Curvature::not_negative);
     Vec<D, double> direction{};
-    if (!sums.find_step(step)) return plane;
+    // At the plane z = 0 these are the sums of w c and of w: they are as large where one body has no weight.
+    const bool has_both = 2 * abs(sums.values[first_of_row(D)]) < sums.cost();
+    if (!has_both || !sums.find_step(step)) return plane;
     for (int count = 1; count < most_sums && share > least_share; ++count) {
       const Plane<D> next = moved<D>(plane, step, share);
       const Sums<D> there = sums_of<D>(penalty, points, next, Curvature::not_negative);
@@ -117,13 +119,14 @@ struct LogisticRegression {
         share *= 0.5;
         continue;
       }
+      const bool is_flat = there.cost() > 0.999 * sums.cost();
       plane = next, sums = there;
       Vec<D, double> turned = slope_of<D>(plane);
       make_unit(turned);
       double change = 0;
       for (int i = 0; i < D; ++i) change = max(change, abs(turned[i] - direction[i]));
       direction = turned;
-      if (penalty == p.penalty && share == 1 && change < little) break;
+      if (penalty == p.penalty && share == 1 && change < little && is_flat) break;
       const double less = max((change < little ? kept_at_rest : kept) * penalty, p.penalty);
       sums.add_penalty(less - penalty, plane);
       penalty = less, share = 1;
@@ -132,21 +135,28 @@ struct LogisticRegression {
     return plane;
   }
 
-  /// The plane that is fitted, and a few steps with all of the curvature, which leave nothing of how it was come to.
+  /// The plane that is fitted, and a few steps with all of the curvature where that is positive, which come to the minimum to
+  /// rounding where a plane parts the bodies. There is no normal where one body's particles have no weight, or the plane's slope is what rounding makes of
+  /// labels that follow no direction.
   template <int D, class Points>
   MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     constexpr int steps = 4;
+    constexpr double least_slope = 1e-9;
     Plane<D> plane = fitted<D>(p, points);
     Sums<D> sums = sums_of<D>(p.penalty, points, plane, Curvature::whole);
     double step[D + 1];
-    for (int count = 0; count < steps && sums.find_step(step); ++count) {
+    for (int count = 0; count < steps; ++count) {
+      if (!sums.find_step(step) && !sums_of<D>(p.penalty, points, plane, Curvature::not_negative).find_step(step))
+        break;
       const Plane<D> next = moved<D>(plane, step, 1);
       const Sums<D> there = sums_of<D>(p.penalty, points, next, Curvature::whole);
       if (!goes_down(there.cost(), sums.cost())) break;
       plane = next, sums = there;
     }
     Vec<D, double> direction = slope_of<D>(plane);
-    if (!(make_unit(direction) > 0)) return false;
+    double square = 0;
+    for (int i = 0; i < D; ++i) square += direction[i] * direction[i];
+    if (!(square > least_slope * least_slope) || !(make_unit(direction) > 0)) return false;
     for (int i = 0; i < D; ++i) normal[i] = direction[i];
     return true;
   }
