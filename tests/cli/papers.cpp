@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <numbers>
-#include <regex>
 #include <sstream>
 
 #include "cli/program.hpp"

@@ -98,9 +98,10 @@ struct LogisticRegression {
   }
 
   /// Newton's steps, each halved until it goes down, until it hardly goes down and the normal hardly turns. The first, from
-  /// the plane z = 0, where f has the slope 1/2, is linear regression. Where a plane parts the bodies the slope has a long way to grow, and all but the
-  /// particles next to the plane have their whole error behind them: the penalty begins high and falls with each step, so
-  /// that a step finds the plane next to the one before; it falls faster where the normal does not turn.
+  /// the plane z = 0, where f has the slope 1/2, is linear regression. Where a plane parts the bodies the slope has a long
+  /// way to grow, and all but the particles next to the plane have their whole error behind them: the penalty begins high
+  /// and falls with each step, so that a step finds the plane next to the one before; it falls faster where the normal does
+  /// not turn.
   template <int D, class Points>
   MPM_HD static Plane<D> fitted(const Parameters& p, const Points& points) {
     constexpr int most_sums = 200;
@@ -135,9 +136,9 @@ struct LogisticRegression {
     return plane;
   }
 
-  /// The plane that is fitted, and a few steps with all of the curvature where that is positive, which come to the minimum to
-  /// rounding where a plane parts the bodies. There is no normal where one body's particles have no weight, or the plane's slope is what rounding makes of
-  /// labels that follow no direction.
+  /// The plane that is fitted, and a few steps with all of the curvature where that is positive, which come to the minimum
+  /// to rounding where a plane parts the bodies. There is no normal where one body's particles have no weight, or the
+  /// plane's slope is what rounding makes of labels that follow no direction.
   template <int D, class Points>
   MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     constexpr int steps = 4;
