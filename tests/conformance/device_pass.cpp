@@ -250,6 +250,13 @@ template <int D, class S> struct Cloud {
   template <class Visit> MPM_HD void for_each(Visit visit) const {
     for (int k = 0; k < 16; ++k) visit(place(k), double(weights[k]));
   }
+  template <int N, class Term> MPM_HD void add(Term term, double (&sums)[N]) const {
+    for (int k = 0; k < 16; ++k) {
+      double values[N];
+      term(place(k), double(weights[k]), values);
+      for (int n = 0; n < N; ++n) sums[n] += values[n];
+    }
+  }
   MPM_HD Vec<3, double> middle() const {
     Vec<3, double> sum{};
     for (int k = 0; k < 16; ++k)
