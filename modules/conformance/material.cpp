@@ -505,6 +505,9 @@ void check_material(const Plugin& plugin, Findings& findings) {
       check_energy_balance(c, random);
       findings.running("closed paths", v, c.where);
       check_closed_paths(c);
+      findings.running("elastic strains", v, c.where);
+      Random own(20261130);
+      check_elastic_strains(c, own);
       findings.running("wave speed", v, c.where);
       check_wave_speed(c, random);
       findings.running("inadmissible states", v, c.where);

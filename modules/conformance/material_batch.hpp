@@ -132,6 +132,9 @@ void check_energy_balance(const Context& c, Random& random);
 /// unexplained after each quarter of a turn is no more than the step makes it, and a hyperelastic law that dissipates
 /// nothing is back at its stress and energy.
 void check_closed_paths(const Context& c);
+/// Checks that stress is the derivative of the stored energy in strains in which nothing flows: from a state that has been
+/// strained, unloaded a little and left at rest for ages, there and back by 3e-6 in six directions.
+void check_elastic_strains(const Context& c, Random& random);
 /// Runs the checks of what the material offers beyond its table, at the end of a path and where else they need.
 void check_material_extensions(const Context& c, const std::vector<Increments>& path);
 

@@ -552,6 +552,15 @@ struct ShearOffEnergy
   }
 };
 
+/// Stores a thousandth more than its stress has worked, which lies within what the steps of a plastic path leave.
+struct StoresTooMuch : VonMises {
+  template <class C, class State>
+  MPM_HD static auto stored_energy(const C& c, const State& state) {
+    auto energy = VonMises::stored_energy(c, state);
+    return decltype(energy)(energy * real<decltype(energy)>(1.001));
+  }
+};
+
 struct Creeps : NeoHookean {  // grows by a millionth a step
   template <int D, class S>
   MPM_HD static S advance(const Constants<scalar_of<S>>& c, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
@@ -880,6 +889,8 @@ TEST_CASE("wrong materials are caught") {
   check_caught(wrong_material<StressOffEnergy>, "stress_from_energy");
   check_caught(wrong_material<ShearOffEnergy>, "closed_path");
   check_caught(wrong_material<test::LyingMetal>, "closed_path");
+  check_caught(wrong_material<StoresTooMuch>, "stress_from_elastic_energy");
+  CHECK(failures(wrong_material<StoresTooMuch>).count("closed_path") == 0);
   check_caught(wrong_material<Creeps>, "closed_path_returns");
   check_caught(wrong_material<SlowWave>, "wave_speed_bounds_tangent");
   check_caught(wrong_material<SlowBranches>, "wave_speed_bounds_tangent");
