@@ -69,6 +69,7 @@ void ExperimentReader::read_initial_state(const Fields& fields, BodySpecificatio
                                                  ? "the stress out of the plane follows from the others"
                                                  : "nothing is stretched out of the plane") +
                                             "; remove \"zz\"");
+    if (out || around) resolved[key].erase(name);  // so that what is resolved can be read again
     return tensor.scalar_expression(name);
   };
   if (given("initial_displacement")) body.displacement = fields.expression("initial_displacement");

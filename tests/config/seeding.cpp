@@ -127,6 +127,10 @@ TEST_CASE("initial states are read by component, and what cannot be is refused",
   const Experiment stretched = discs.read(R"("initial_deformation_gradient": {"xy": 0.5},)");
   CHECK((*stretched.bodies[0].deformation_gradient)[0]({}, {}, 0) == 1);
   CHECK((*stretched.bodies[0].deformation_gradient)[1]({}, {}, 0) == 0.5);
+  // A run folder's experiment is read again, so that it must not hold what is refused.
+  CHECK(read.resolved["bodies"][0]["initial_stress"].dump() == R"({"xx":-1000.0,"xy":"1e3*Y","yy":0.0})");
+  CHECK(stretched.resolved["bodies"][0]["initial_deformation_gradient"].dump() ==
+        R"({"xx":1.0,"xy":0.5,"yx":0.0,"yy":1.0})");
   CHECK(discs.errors_of(R"("initial_stress": {"zz": 1},)") ==
         "FILE:22:69: /bodies/0/initial_stress/zz: in plane strain the stress out of the plane follows from the "
         "others; remove \"zz\"");

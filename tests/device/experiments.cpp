@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 
 #include "backends/device/program.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -111,6 +113,17 @@ std::vector<fs::path> covering_choice(double most_particles) {
 }
 
 }  // namespace
+
+TEST_CASE("what a run folder keeps of a shipped experiment is read again as the same one", "[shipped]") {
+  const TemporaryFolder folder;
+  for (const fs::path& file : shipped_experiments()) {
+    INFO(shipped_name(file));
+    const Experiment experiment = read_shipped(file, "cpu");
+    std::ofstream(folder / "experiment.json") << experiment.resolved.dump(2);
+    const Experiment again = read_experiment(folder / "experiment.json", plugins(), app::read_options(plugins(), {}));
+    CHECK(nlohmann::ordered_json::diff(again.resolved, experiment.resolved).dump() == "[]");
+  }
+}
 
 TEST_CASE("shipped experiments begin on the host-run device as on the reference backend", "[device][shipped]") {
   const KeptPrograms programs;
