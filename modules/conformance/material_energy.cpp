@@ -199,7 +199,8 @@ void check_elastic_strains(const Context& c, Random& random) {
     for (int lane = 0; lane < full; ++lane) {
       const Matrix3 tau = held.tau(lane), both = sum(plus.tau(lane), minus.tau(lane));
       // A law that flows in one of the strains, or whose stress bends there, has no derivative by them.
-      const double bend = size_of(sum(both, scaled(tau, -2))), heat = plus.dissipated(0, lane) + minus.dissipated(0, lane);
+      const double bend = size_of(sum(both, scaled(tau, -2))),
+                   heat = plus.dissipated(0, lane) + minus.dissipated(0, lane);
       if (!(bend <= 1e3 * size * size * c.modulus) || !(std::abs(heat) <= 1e-6 * size * c.modulus)) continue;
       const double stored = plus.energy(0, lane) - minus.energy(0, lane),
                    warmed = plus.dissipated(0, lane) - minus.dissipated(0, lane);
@@ -210,8 +211,9 @@ void check_elastic_strains(const Context& c, Random& random) {
       if (size_of(tau) > 1e-6 * c.modulus) ++elastic;
     }
   }
-  c.findings.at_most("stress_from_elastic_energy", c.variant, error, finite ? 1e-8 : 10 * strain * strain,
-                     "|d(stored energy) - tau : d| over rho c^2 |d|, of small strains in which nothing flows" + c.where);
+  c.findings.at_most(
+      "stress_from_elastic_energy", c.variant, error, finite ? 1e-8 : 10 * strain * strain,
+      "|d(stored energy) - tau : d| over rho c^2 |d|, of small strains in which nothing flows" + c.where);
   c.findings.report("elastic_strains_compared [" + c.variant.name() + "]", elastic,
                     "strains of a stressed particle in which nothing flows, of 384" + c.where);
 }

@@ -5,6 +5,7 @@
 
 #include "render/chart.hpp"
 #include "render/plot.hpp"
+#include "render/svg_canvas.hpp"
 #include "support/csv.hpp"
 #include "support/numbers.hpp"
 
@@ -241,15 +242,22 @@ void draw_key(Canvas& canvas, const Theme& theme, const Layout& at, const Box& p
 
 void draw_map(Canvas& canvas, const HeatMap& map, const Theme& theme) {
   std::size_t bare = 0, cut = 0;
-  const Layout rough = lay_out(canvas, theme, map, {theme.margin, 0, theme.width - theme.margin, 0.8 * theme.height});
-  for (std::size_t cell = 0; cell < map.values.size(); ++cell) {
-    bare += !std::isnan(map.values[cell]) && !has_colour(map, map.values[cell]);
-    cut += writing_of(canvas, theme, map, cell, rough).is_cut;
-  }
+  for (const double value : map.values) bare += !std::isnan(value) && !has_colour(map, value);
   const std::string why = map.log_scale ? "not above zero or not finite, without colour" : "not finite, without colour";
-  const std::string remark =
-      joined(counted(bare, "cell", why), counted(cut, "cell", "without room for the whole text"));
-  const Box page = draw_page(canvas, theme, map.title, joined(map.footnote, remark));
+  const auto footnote = [&] {
+    return joined(map.footnote,
+                  joined(counted(bare, "cell", why), counted(cut, "cell", "without room for the whole text")));
+  };
+  // A remark takes a line of the page, so that cells are counted twice: with the room that is there without one, and with
+  // the room that one leaves.
+  for (int look = 0; look < 2 && !map.values.empty(); ++look) {
+    SvgCanvas measuring(map.width, map.height, "");
+    const Layout at = lay_out(measuring, theme, map, draw_page(measuring, theme, map.title, footnote()));
+    cut = 0;
+    for (std::size_t cell = 0; cell < map.values.size(); ++cell)
+      cut += writing_of(measuring, theme, map, cell, at).is_cut;
+  }
+  const Box page = draw_page(canvas, theme, map.title, footnote());
   if (map.values.empty()) {
     canvas.text(page.centre(), "no data to show", theme.style(kQuiet, Anchor::middle));
     return;
