@@ -5,9 +5,12 @@
 #include <cstdio>
 #include <iomanip>
 #include <limits>
+#include <map>
+#include <set>
 #include <sstream>
 
 #include "experiment/diagnostics.hpp"
+#include "metrics/particle_quantities.hpp"
 #include "output/summary_value.hpp"
 #include "run/books.hpp"
 #include "run/limits.hpp"
@@ -188,6 +191,43 @@ std::string loneliness(const Evidence& run) {
          "particles a cell, or a shape that grows with the particle, \"cpdi\" (docs/lessons/5_large_stretch.md)";
 }
 
+/// A body that is soft beside another one of its velocity field takes as many steps as that one wants. Transfers that replace
+/// the particles' velocities lose some of its motion in each of them: with a hundred times the steps that it would take alone, the
+/// soft bar of the study of stiff bars meets the other one by APIC as if both were rigid.
+std::string soft_partner(const Evidence& run) {
+  constexpr double many = 100;
+  const Experiment& experiment = run.experiment();
+  const Plugin& transfer = *experiment.transfer.plugin;
+  if (transfer.transfer().traits & MPM_GATHERS_INCREMENT || run.rows.state_lost()) return "";
+  std::map<int, std::set<int>> materials;
+  for (const BodySpecification& body : experiment.bodies)
+    if (!body.frozen) materials[body.field].insert(body.material);
+  /// Of a velocity field the bodies with the slowest and the fastest waves, m/s.
+  std::map<int, std::pair<double, int>> slowest, fastest;
+  for (int k = 0; k < static_cast<int>(experiment.bodies.size()); ++k) {
+    const BodySpecification& body = experiment.bodies[static_cast<std::size_t>(k)];
+    if (body.frozen || materials[body.field].size() < 2) continue;
+    const std::vector<double> waves =
+        material_quantities(experiment, k, run.simulation.backend().body_state(k)).wave_speed;
+    if (waves.empty()) continue;
+    const std::pair<double, int> here{*std::max_element(waves.begin(), waves.end()), k};
+    slowest[body.field] = std::min(slowest.try_emplace(body.field, here).first->second, here);
+    fastest[body.field] = std::max(fastest.try_emplace(body.field, here).first->second, here);
+  }
+  for (const auto& [field, fast] : fastest) {
+    const auto& slow = slowest.at(field);
+    if (!(fast.first >= many * slow.first)) continue;
+    const auto name = [&](int k) { return "\"" + experiment.bodies[static_cast<std::size_t>(k)].name + "\""; };
+    return "body " + name(slow.second) + " shares a velocity field with " + name(fast.second) + ", whose waves are " +
+           digits(fast.first / slow.first) + " times as fast: it takes the short steps of that one, and transfer \"" +
+           std::string(transfer.id()) + "\"" +
+           (experiment.filter ? " with filter \"" + std::string(experiment.filter->plugin->id()) + "\"" : "") +
+           " damps it in each of them, so that it meets the other one as if it were rigid; take transfer \"flip\", or "
+           "\"contact\", which gives each body a field of its own (docs/studies/extremes.md#how-unlike)";
+  }
+  return "";
+}
+
 /// Contact that acted while nothing touched.
 std::string early_contact(const Evidence& run) {
   constexpr double most_of_it = 0.1;
@@ -222,7 +262,7 @@ std::vector<std::string> warnings_of(const Simulation& simulation, const Metrics
   const Evidence run{simulation, metrics, rows, summary};
   std::vector<std::string> all;
   for (const auto warning : {rim_steps, coarse_contact, early_contact, sliding_block, tent_steps, crossings, loneliness,
-                             numerical_loss, unexplained_loss, books, images, filter_growth, few_entries})
+                             soft_partner, numerical_loss, unexplained_loss, books, images, filter_growth, few_entries})
     if (const std::string text = warning(run); !text.empty()) all.push_back(text);
   for (std::string& text : rows.clamps().warnings()) all.push_back(std::move(text));
   for (std::string& text : rows.gases().warnings()) all.push_back(std::move(text));

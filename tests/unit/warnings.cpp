@@ -127,6 +127,33 @@ TEST_CASE("particles that ended alone are counted", "[warnings]") {
   CHECK(lone_particles(touching.simulation) == 1);
 }
 
+TEST_CASE("a soft body in the velocity field of one whose waves are a hundred times as fast is warned of",
+          "[warnings]") {
+  const std::string text =
+      scene(box("soft", "[0.5, 0.5]", "[0.8, 0.8]") + ", " +
+            R"({"name": "stiff", "material": "hard", "geometry": {"type": "box", "lower": [0.8, 0.5],
+                                 "upper": [1.1, 0.8]}})");
+  const auto of = [&](const std::string& transfer, double modulus, const std::string& more = "") {
+    const std::vector<std::string> hard{R"(/materials/hard={"type": "neo_hookean", "youngs_modulus": )" +
+                                            digits(modulus) + R"(, "poisson_ratio": 0.3, "density": 10})",
+                                        "/transfer/type=" + transfer, "/solver/time_step=1e-6",
+                                        "/solver/end_time=3e-6"};
+    std::vector<std::string> all = hard;
+    if (!more.empty()) all.push_back(more);
+    return warned(text, Json::object(), all);
+  };
+  const auto warns = [](const std::vector<std::string>& warnings, const std::string& part) {
+    return warnings.size() == 1 && warnings.front().find(part) != std::string::npos;
+  };
+  CHECK(warns(of("apic", 1.1e7), "body \"soft\" shares a velocity field with \"stiff\", whose waves are 105 times"));
+  CHECK(warns(of("apic", 1.1e7), "transfer \"apic\" damps it"));
+  CHECK(warns(of("pic", 1.1e7, R"(/filter={"type": "fmpm", "order": 4})"), "transfer \"pic\" with filter \"fmpm\""));
+  CHECK(of("apic", 0.9e7).empty());  // 95 times
+  CHECK(of("flip", 1.1e7).empty());
+  CHECK(of("apic", 1.1e7, R"(/contact={"type": "frictionless"})").empty());
+  CHECK(of("apic", 1.1e7, "/bodies/0/frozen=true").empty());
+}
+
 TEST_CASE("contact that acts across an open gap is warned of", "[warnings]") {
   // Blocks whose corners are half a cell off each other, which are still a cell apart at the end where they are slow.
   const auto blocks = [](const std::string& speed) {
