@@ -20,9 +20,10 @@ TEST_CASE("the closed form of Hertz has the numbers of the case", "[hertz]") {
   CHECK(contact.pressure() == Approx(9.35135129).epsilon(1e-7));
   CHECK(1000 * std::pow(contact.half_width(), 2) / (2 * 8) ==
         Page("docs/contact.md").read("with rows 17 mm and a sag of # mm").front().rounded());
-  CHECK(contact.stress(0, 0) == Approx(-contact.pressure()).epsilon(1e-12));
-  CHECK(contact.stress(0.5, 0) == Approx(-9.35135129 * std::sqrt(1 - std::pow(0.5 / 0.68077837, 2))).epsilon(1e-7));
-  CHECK(contact.stress(0, 0.6) == Approx(-9.35135129 / std::sqrt(1 + std::pow(0.6 / 0.68077837, 2))).epsilon(1e-7));
+  const double b = contact.half_width(), p = contact.pressure();
+  CHECK(p * line_stress(b, 0, 0) == Approx(-p).epsilon(1e-12));
+  CHECK(p * line_stress(b, 0.5, 0) == Approx(-9.35135129 * std::sqrt(1 - std::pow(0.5 / 0.68077837, 2))).epsilon(1e-7));
+  CHECK(p * line_stress(b, 0, 0.6) == Approx(-9.35135129 / std::sqrt(1 + std::pow(0.6 / 0.68077837, 2))).epsilon(1e-7));
 }
 
 // Steps of the rim, one particle's spacing high, are felt: the middle lies on a flat.
@@ -31,14 +32,44 @@ TEST_CASE("the stress under two cylinders is that of Hertz", "[hertz][contact]")
   const Pressed found = press({});
   CHECK(found.rms < 0.08);
   CHECK(found.scale == Approx(1).epsilon(0.04));
+  CHECK(found.fitted_width == Approx(1).epsilon(0.06));
+  CHECK(found.fitted_pressure == Approx(1).epsilon(0.08));
+}
+
+TEST_CASE("the stress under two spheres is that of Hertz", "[hertz][contact]") {
+  // Along the axis p0 / (1 + z^2 / a^2), on the surface p0 sqrt(1 - r^2 / a^2).
+  CHECK(circle_stress(2, 1e-9, 3) == Approx(-1 / (1 + 9.0 / 4)).epsilon(1e-9));
+  CHECK(circle_stress(2, 1, 1e-9) == Approx(-std::sqrt(1 - 1.0 / 4)).epsilon(1e-6));
+  std::printf("Spheres pressed together, around the axis\n");
+  const Pressed found = press({set("/grid/symmetry", "\"axisymmetric\""), set("/constants/close", "0.1")}, true);
+  CHECK(found.rms < 0.08);
+  CHECK(found.fitted_width == Approx(1).epsilon(0.04));
+  CHECK(found.fitted_pressure == Approx(1).epsilon(0.08));
+}
+
+TEST_CASE("the stress under two spheres comes to that of Hertz on finer cells", "[hertz][contact][slow]") {
+  std::printf("Spheres pressed together, around the axis, 4.7 and 9.7 cells a half-width\n");
+  const auto pressed = [](const char* cell) {
+    return press(
+        {set("/grid/symmetry", "\"axisymmetric\""), set("/constants/close", "0.05"), set("/grid/cell_size", cell)},
+        true);
+  };
+  const Pressed coarse = pressed("0.136"), fine = pressed("0.068");
+  CHECK(fine.rms < 0.09);
+  CHECK(fine.fitted_width == Approx(1).epsilon(0.03));
+  CHECK(fine.fitted_pressure == Approx(1).epsilon(0.03));
+  CHECK(std::abs(fine.fitted_width - 1) < 0.5 * std::abs(coarse.fitted_width - 1));
+  CHECK(std::abs(fine.fitted_pressure - 1) < 0.5 * std::abs(coarse.fitted_pressure - 1));
 }
 
 TEST_CASE("the stress under two cylinders at the load of the case is that of Hertz", "[hertz][contact][slow]") {
   std::printf("Cylinders pressed together, 10 cells a half-width\n");
   const Pressed found = press({set("/constants/close", "0.1"), set("/grid/cell_size", "0.068")});
-  CHECK(found.contact.force == Approx(10).epsilon(0.05));
+  CHECK(found.force == Approx(10).epsilon(0.05));
   CHECK(found.rms < 0.09);
   CHECK(found.scale == Approx(1).epsilon(0.02));
+  CHECK(found.fitted_width == Approx(1).epsilon(0.03));
+  CHECK(found.fitted_pressure == Approx(1).epsilon(0.03));
 }
 
 namespace {
