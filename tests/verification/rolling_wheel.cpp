@@ -58,3 +58,23 @@ TEST_CASE("a wheel of finer particles rolls more exactly", "[friction][rolling][
   check_both("apic, 4 a cell and axis", apic, 0.025, 1 / (1 + 0.05 * 0.05 / (radius * radius)));
   check_both("flip, half the cells", grid("0.025", "2"), 0.025);
 }
+
+TEST_CASE("on a rigid incline a wheel comes to two thirds of g sin with the cells", "[friction][rolling]") {
+  const auto error = [](const std::string& cell, const std::string& modulus = "2e6") {
+    std::vector<std::string> settings{
+        R"J(/bodies=[{"name": "wheel", "material": "m", "particles_per_cell_axis": 4,
+          "geometry": {"type": "ball", "centre": [0.7, 0.5], "radius": 0.5}}])J",
+        R"J(/rigid_bodies=[{"geometry": {"type": "half_space", "point": [0, 0], "normal": [0, 1]},
+          "contact": {"type": "coulomb", "friction": 0.5}}])J",
+        "/contact=null", set("/grid/cell_size", cell), set("/materials/m/youngs_modulus", modulus)};
+    const double acceleration = roll(settings, 0).acceleration;
+    std::printf("Wheel of %s Pa on a rigid incline, cells of %s m: %.4f m/s^2, exact 3.2700\n", modulus.c_str(),
+                cell.c_str(), acceleration);
+    return std::abs(acceleration / 3.27 - 1);
+  };
+  const double coarse = error("0.05"), fine = error("0.025");
+  CHECK(coarse < 0.06);
+  CHECK(fine < 0.03);
+  CHECK(fine < 0.65 * coarse);
+  CHECK(error("0.05", "2e7") < 0.5 * coarse);
+}

@@ -55,13 +55,13 @@ inline double slope(const std::vector<double>& t, const std::vector<double>& y) 
   return above / below;
 }
 
-inline Rolling roll(const std::vector<std::string>& settings) {
+inline Rolling roll(const std::vector<std::string>& settings, int body = 1) {
   Scene scene(wheel, settings);
   std::vector<double> times, velocities, rims;
   while (!scene.simulation.finished()) {
     scene.simulation.step();
     if (scene.simulation.time() < 0.4 || scene.simulation.steps() % 20 != 0) continue;
-    const auto [velocity, rim] = speeds(scene.body(1));
+    const auto [velocity, rim] = speeds(scene.body(body));
     times.push_back(scene.simulation.time()), velocities.push_back(velocity), rims.push_back(rim);
   }
   return {slope(times, velocities), slope(times, rims)};
