@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <map>
 
 #include "drive/extremes.hpp"
 #include "drive/results.hpp"
@@ -174,6 +175,22 @@ class ExtremesMap {
 
 }  // namespace
 
+/// The clamps that acted, each with the extremes in which it did; a path that is clamped on its way and at once counts once.
+std::map<std::string, std::string> clamps_of(const std::vector<drive::Extreme>& rows) {
+  std::map<std::string, std::string> names;
+  const auto acts = [](const drive::Extreme& row, const std::string& clamp) {
+    return std::find(row.clamps.begin(), row.clamps.end(), clamp) != row.clamps.end();
+  };
+  for (const drive::Extreme& row : rows)
+    for (const std::string& clamp : row.clamps) {
+      const drive::Extreme* const on_its_way = row.steps == 1 && &row != &rows.front() ? &row - 1 : nullptr;
+      if (on_its_way && acts(*on_its_way, clamp)) continue;
+      std::string& text = names[clamp];
+      text += (text.empty() ? "" : ", ") + (on_its_way ? on_its_way->name + " in one step" : row.name);
+    }
+  return names;
+}
+
 /// Prints a row of each extreme. Returns the exit code.
 int drive_to_extremes(const DriveOptions& options, const Component& material, int dimension) {
   const drive::ExtremeSize size = size_of(options);
@@ -198,6 +215,9 @@ int drive_to_extremes(const DriveOptions& options, const Component& material, in
     if (row.drift > 0) std::printf("  stress drifts by %.2g of stiffness x cycles x rounding\n", row.drift);
   }
   std::printf("The numbers are those of the last state that was taken.\n");
+  for (const auto& [clamp, names] : clamps_of(rows))
+    std::fprintf(stderr, "warning: material \"%s\" was clamped (%s): %s (mpm describe %s)\n", options.id.c_str(),
+                 names.c_str(), clamp.c_str(), options.id.c_str());
   if (!options.out.empty() && !stop_requested()) draw_paths(options, rows);
   if (!stop_requested()) return all_hold ? done : run_failed;
   std::printf("stopped by a signal before the next extreme\n");
@@ -244,6 +264,8 @@ int drive_every_to_extremes(const DriveOptions& options) {
       if (!as_expected) std::printf("  %s: %s\n", row.name.c_str(), row.outcome_text().c_str());
       if (!row.holds()) worst = run_failed;
     }
+    for (const auto& [clamp, names] : clamps_of(rows))
+      std::printf("  clamped %s: %s\n", clamp.substr(0, clamp.find(", ")).c_str(), names.c_str());
     std::fflush(stdout);
     chart.add(std::string(plugin->id()), rows);
   }

@@ -48,10 +48,12 @@ class Extremes {
     for (int i = 0; i < 3; ++i) L(i, i) -= 1;
     for (double& entry : L.m) entry /= dt;
     extreme.end = point.look();
+    ClampWatch watch(*material_.plugin, material_.parameters);
     for (int k = 1; k <= steps; ++k) {
       const Response response = point.advance(L, dt);
       extreme.outcome = judge(response, std::pow(ratio, k), stiffness_);
       if (extreme.outcome != Outcome::right) return extreme;
+      if (watch.is_waiting()) point.look_for_clamps(watch, k * dt), extreme.clamps = watch.acted();
       extreme.end = response;
       if (steps == 1) continue;
       const double size = kind == ExtremeKind::volume    ? std::pow(ratio, k)
@@ -159,6 +161,11 @@ const char* name_of(Outcome outcome) {
     default:
       return "NEGATIVE ENERGY";
   }
+}
+
+std::string Extreme::outcome_text() const {
+  if (must_be_refused && !holds()) return "TAKEN";
+  return outcome == Outcome::right && !clamps.empty() ? "right, clamped" : name_of(outcome);
 }
 
 std::vector<Extreme> extremes(const Component& material, int dimension, const ExtremeSize& size,

@@ -33,8 +33,9 @@ struct Extreme {
   std::vector<std::pair<double, Response>> course;
   /// Of the cycles: the change of the stress over stiffness at rest, cycles and rounding, 2^-52.
   double drift = 0;
+  std::vector<std::string> clamps;  ///< those of the material that acted: where each begins, and what it does
   /// The outcome in words.
-  std::string outcome_text() const { return must_be_refused && !holds() ? "TAKEN" : name_of(outcome); }
+  std::string outcome_text() const;
   bool holds() const { return must_be_refused ? outcome == Outcome::refused : outcome <= Outcome::refused; }
 };
 

@@ -38,15 +38,25 @@ void ClampWatch::set_seen(std::span<const Seen> seen) {
   std::copy_n(seen.begin(), std::min(seen.size(), seen_.size()), seen_.begin());
 }
 
+std::string ClampWatch::text_of(std::size_t k) const {
+  const mpm_clamp& clamp = table_->clamps[k];
+  return std::string(clamp.where) + " " + support::three_digits(bounds_[k]) + clamp.unit + ", " + clamp.what;
+}
+
+std::vector<std::string> ClampWatch::acted() const {
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < seen_.size(); ++k)
+    if (seen_[k].particles > 0) all.push_back(text_of(k));
+  return all;
+}
+
 std::vector<std::string> ClampWatch::warnings(const std::string& name) const {
   std::vector<std::string> all;
   for (std::size_t k = 0; k < seen_.size(); ++k) {
     if (seen_[k].particles == 0) continue;
-    const mpm_clamp& clamp = table_->clamps[k];
     all.push_back("material \"" + name + "\" was clamped from t = " + support::three_digits(seen_[k].time) + " s on (" +
                   std::to_string(seen_[k].particles) + (seen_[k].particles == 1 ? " particle" : " particles") +
-                  " then): " + clamp.where + " " + support::three_digits(bounds_[k]) + clamp.unit + ", " + clamp.what +
-                  " (mpm describe " + std::string(material_->id()) + ")");
+                  " then): " + text_of(k) + " (mpm describe " + std::string(material_->id()) + ")");
   }
   return all;
 }

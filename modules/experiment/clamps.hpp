@@ -28,13 +28,17 @@ class ClampWatch {
   std::span<const Seen> seen() const { return seen_; }
   void set_seen(std::span<const Seen> seen);
 
-  /// A sentence for each clamp that acted. `name` is the material's in the experiment.
+  /// Where each clamp that acted begins, and what it does.
+  std::vector<std::string> acted() const;
+  /// A sentence for each of them. `name` is the material's in the experiment.
   std::vector<std::string> warnings(const std::string& name) const;
 
   const Plugin& material() const { return *material_; }
   const std::vector<double>& parameters() const { return *parameters_; }
 
  private:
+  std::string text_of(std::size_t clamp) const;
+
   const Plugin* material_;
   const std::vector<double>* parameters_;
   const mpm_material_clamps* table_;
