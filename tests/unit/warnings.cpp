@@ -154,6 +154,24 @@ TEST_CASE("a soft body in the velocity field of one whose waves are a hundred ti
   CHECK(of("apic", 1.1e7, "/bodies/0/frozen=true").empty());
 }
 
+TEST_CASE("a crack on B-splines whose law was told of one cell is warned of", "[warnings]") {
+  const auto of = [](const std::string& shape, double band, double damage) {
+    const std::vector<std::string> all{
+        R"(/materials/m={"type": "damage", "youngs_modulus": 1000, "poisson_ratio": 0.2, "density": 10, "tensile_strength": 10,
+          "fracture_energy": 10, "band_cells": )" +
+            digits(band) + "}",
+        "/solver/end_time=0.01"};
+    const Json summary{{"energy", {{"ledger", {{"damage", damage}}}}}};
+    return warned(scene(box("plate", "[0.5, 0.5]", "[1.5, 1]"), "", shape), summary, all);
+  };
+  const auto warnings = of("bspline_quadratic", 1, 0.1);
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings.front().find("material \"m\" softens over a band of 1 cells") == 0);
+  CHECK(of("bspline_quadratic", 2, 0.1).empty());
+  CHECK(of("bspline_quadratic", 1, 0).empty());
+  CHECK(of("gimp", 1, 0.1).empty());
+}
+
 TEST_CASE("contact that acts across an open gap is warned of", "[warnings]") {
   // Blocks whose corners are half a cell off each other, which are still a cell apart at the end where they are slow.
   const auto blocks = [](const std::string& speed) {
