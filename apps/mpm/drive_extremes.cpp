@@ -173,8 +173,6 @@ class ExtremesMap {
   render::HeatMap map_;
 };
 
-}  // namespace
-
 /// The clamps that acted, each with the extremes in which it did; a path that is clamped on its way and at once counts once.
 std::map<std::string, std::string> clamps_of(const std::vector<drive::Extreme>& rows) {
   std::map<std::string, std::string> names;
@@ -183,6 +181,7 @@ std::map<std::string, std::string> clamps_of(const std::vector<drive::Extreme>& 
   };
   for (const drive::Extreme& row : rows)
     for (const std::string& clamp : row.clamps) {
+      if (row.must_be_refused) continue;
       const drive::Extreme* const on_its_way = row.steps == 1 && &row != &rows.front() ? &row - 1 : nullptr;
       if (on_its_way && acts(*on_its_way, clamp)) continue;
       std::string& text = names[clamp];
@@ -190,6 +189,8 @@ std::map<std::string, std::string> clamps_of(const std::vector<drive::Extreme>& 
     }
   return names;
 }
+
+}  // namespace
 
 /// Prints a row of each extreme. Returns the exit code.
 int drive_to_extremes(const DriveOptions& options, const Component& material, int dimension) {

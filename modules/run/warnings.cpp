@@ -198,11 +198,11 @@ std::string soft_partner(const Evidence& run) {
   constexpr double many = 100;
   const Experiment& experiment = run.experiment();
   const Plugin& transfer = *experiment.transfer.plugin;
-  if (transfer.transfer().traits & MPM_GATHERS_INCREMENT || run.rows.state_lost()) return "";
+  if (transfer.transfer().traits & MPM_GATHERS_INCREMENT || experiment.filter || run.rows.state_lost()) return "";
   std::map<int, std::set<int>> materials;
   for (const BodySpecification& body : experiment.bodies)
     if (!body.frozen) materials[body.field].insert(body.material);
-  /// Of a velocity field the bodies with the slowest and the fastest waves, m/s.
+  /// Of a velocity field the bodies whose speeds limit the step least and most, m/s.
   std::map<int, std::pair<double, int>> slowest, fastest;
   for (int k = 0; k < static_cast<int>(experiment.bodies.size()); ++k) {
     const BodySpecification& body = experiment.bodies[static_cast<std::size_t>(k)];
@@ -218,30 +218,35 @@ std::string soft_partner(const Evidence& run) {
     const auto& slow = slowest.at(field);
     if (!(fast.first >= many * slow.first)) continue;
     const auto name = [&](int k) { return "\"" + experiment.bodies[static_cast<std::size_t>(k)].name + "\""; };
-    return "body " + name(slow.second) + " shares a velocity field with " + name(fast.second) + ", whose waves are " +
-           digits(fast.first / slow.first) + " times as fast: it takes the short steps of that one, and transfer \"" +
-           std::string(transfer.id()) + "\"" +
-           (experiment.filter ? " with filter \"" + std::string(experiment.filter->plugin->id()) + "\"" : "") +
-           " damps it in each of them, so that it meets the other one as if it were rigid; take transfer \"flip\", or "
+    return "body " + name(slow.second) + " shares a velocity field with " + name(fast.second) + ", which wants steps " +
+           digits(fast.first / slow.first) + " times as short: transfer \"" + std::string(transfer.id()) +
+           "\" damps it in each of these, so that where the two meet it does as if it were rigid; take transfer "
+           "\"flip\", or "
            "\"contact\", which gives each body a field of its own (docs/studies/extremes.md#how-unlike)";
   }
   return "";
 }
 
-/// A law that scales its softening by the cells is told how many of them a crack is wide. On quadratic B-splines it is two
-/// (figures/studies/damage_cells.csv); told of one, a crack takes up twice its energy.
+/// A law that scales its softening by the cells is told how many of them a crack is wide. On quadratic B-splines a crack
+/// dissipates what a band of two cells does (figures/studies/damage_cells.csv), however narrow the law takes it for.
 std::string narrow_band(const Evidence& run) {
   const Experiment& experiment = run.experiment();
   if (!experiment.shape.plugin->id().starts_with("bspline")) return "";
-  if (output::number_at(run.summary, "energy.ledger.damage") == 0) return "";  // nothing has cracked
-  for (const MaterialSpecification& material : experiment.materials)
-    for (const mpm_parameter& parameter : material.component.plugin->parameters())
-      if (std::string_view(parameter.name) == "band_cells" && material.component.parameter("band_cells") < 2)
-        return "material \"" + material.name + "\" softens over a band of " +
-               digits(material.component.parameter("band_cells")) +
-               " cells, and a crack on B-splines is two cells wide: it takes up about twice its fracture energy; set "
-               "band_cells "
-               "to 2, or take shape \"linear\" or \"gimp\" (docs/studies/crack_bands.md)";
+  if (!(output::number_at(run.summary, "energy.ledger.damage") > 0)) return "";  // nothing has cracked, or nobody knows
+  for (const BodySpecification& body : experiment.bodies) {
+    const MaterialSpecification& material = experiment.materials[static_cast<std::size_t>(body.material)];
+    for (const mpm_parameter& parameter : material.component.plugin->parameters()) {
+      if (body.frozen || std::string_view(parameter.name) != "band_cells") continue;
+      const double band = material.component.parameter("band_cells");
+      if (band >= 2) continue;
+      return "material \"" + material.name + "\" softens over a band of " + digits(band) +
+             " cells, and on B-splines a crack dissipates what a band of two cells does: where it has cracked it took "
+             "up about " +
+             digits(2 / band) +
+             " times its fracture energy; set band_cells to 2, on smaller cells where that is refused, or take shape "
+             "\"linear\" or \"gimp\" (docs/studies/crack_bands.md)";
+    }
+  }
   return "";
 }
 

@@ -561,6 +561,13 @@ struct StoresTooMuch : VonMises {
   }
 };
 
+struct AlwaysWarm : VonMises {  // says heat in every step, so that no strain of it is elastic
+  template <class G, int D, class S>
+  MPM_HD static S advance(const Constants<scalar_of<S>>& c, const G& L, scalar_of<S> dt, State<D, S>& state) {
+    return VonMises::advance(c, L, dt, state) + real<S>(1e-3) * c.mu;
+  }
+};
+
 struct Creeps : NeoHookean {  // grows by a millionth a step
   template <int D, class S>
   MPM_HD static S advance(const Constants<scalar_of<S>>& c, const Mat<D, S>& L, scalar_of<S> dt, State<D, S>& state) {
@@ -891,6 +898,7 @@ TEST_CASE("wrong materials are caught") {
   check_caught(wrong_material<test::LyingMetal>, "closed_path");
   check_caught(wrong_material<StoresTooMuch>, "stress_from_elastic_energy");
   CHECK(failures(wrong_material<StoresTooMuch>).count("closed_path") == 0);
+  check_caught(wrong_material<AlwaysWarm>, "elastic_strains_found");
   check_caught(wrong_material<Creeps>, "closed_path_returns");
   check_caught(wrong_material<SlowWave>, "wave_speed_bounds_tangent");
   check_caught(wrong_material<SlowBranches>, "wave_speed_bounds_tangent");

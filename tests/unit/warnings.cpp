@@ -127,8 +127,7 @@ TEST_CASE("particles that ended alone are counted", "[warnings]") {
   CHECK(lone_particles(touching.simulation) == 1);
 }
 
-TEST_CASE("a soft body in the velocity field of one whose waves are a hundred times as fast is warned of",
-          "[warnings]") {
+TEST_CASE("a soft body in the velocity field of one that wants a hundredth of its steps is warned of", "[warnings]") {
   const std::string text =
       scene(box("soft", "[0.5, 0.5]", "[0.8, 0.8]") + ", " +
             R"({"name": "stiff", "material": "hard", "geometry": {"type": "box", "lower": [0.8, 0.5],
@@ -145,10 +144,10 @@ TEST_CASE("a soft body in the velocity field of one whose waves are a hundred ti
   const auto warns = [](const std::vector<std::string>& warnings, const std::string& part) {
     return warnings.size() == 1 && warnings.front().find(part) != std::string::npos;
   };
-  CHECK(warns(of("apic", 1.1e7), "body \"soft\" shares a velocity field with \"stiff\", whose waves are 105 times"));
+  CHECK(warns(of("apic", 1.1e7), "body \"soft\" shares a velocity field with \"stiff\", which wants steps 105 times"));
   CHECK(warns(of("apic", 1.1e7), "transfer \"apic\" damps it"));
-  CHECK(warns(of("pic", 1.1e7, R"(/filter={"type": "fmpm", "order": 4})"), "transfer \"pic\" with filter \"fmpm\""));
-  CHECK(of("apic", 0.9e7).empty());  // 95 times
+  CHECK(of("pic", 1.1e7, R"(/filter={"type": "fmpm", "order": 4})").empty());  // no study has measured filters
+  CHECK(of("apic", 0.9e7).empty());                                            // 95 times
   CHECK(of("flip", 1.1e7).empty());
   CHECK(of("apic", 1.1e7, R"(/contact={"type": "frictionless"})").empty());
   CHECK(of("apic", 1.1e7, "/bodies/0/frozen=true").empty());
@@ -161,7 +160,8 @@ TEST_CASE("a crack on B-splines whose law was told of one cell is warned of", "[
           "fracture_energy": 10, "band_cells": )" +
             digits(band) + "}",
         "/solver/end_time=0.01"};
-    const Json summary{{"energy", {{"ledger", {{"damage", damage}}}}}};
+    const Json cracked{{"energy", {{"ledger", {{"damage", damage}}}}}};
+    const Json summary = damage < 0 ? Json::object() : cracked;  // without a ledger
     return warned(scene(box("plate", "[0.5, 0.5]", "[1.5, 1]"), "", shape), summary, all);
   };
   const auto warnings = of("bspline_quadratic", 1, 0.1);
@@ -169,6 +169,7 @@ TEST_CASE("a crack on B-splines whose law was told of one cell is warned of", "[
   CHECK(warnings.front().find("material \"m\" softens over a band of 1 cells") == 0);
   CHECK(of("bspline_quadratic", 2, 0.1).empty());
   CHECK(of("bspline_quadratic", 1, 0).empty());
+  CHECK(of("bspline_quadratic", 1, -1).empty());
   CHECK(of("gimp", 1, 0.1).empty());
 }
 
