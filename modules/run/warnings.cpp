@@ -191,9 +191,9 @@ std::string loneliness(const Evidence& run) {
          "particles a cell, or a shape that grows with the particle, \"cpdi\" (docs/lessons/5_large_stretch.md)";
 }
 
-/// A body that is soft beside another one of its velocity field takes as many steps as that one wants. Transfers that replace
-/// the particles' velocities lose some of its motion in each of them: with a hundred times the steps that it would take alone, the
-/// soft bar of the study of stiff bars meets the other one by APIC as if both were rigid.
+/// A body that is soft beside another one of its velocity field takes as many steps as that one wants. Transfers that
+/// replace the particles' velocities lose some of its motion in each of them: with a hundred times the steps that it would
+/// take alone, the soft bar of the study of stiff bars meets the other one by APIC as if both were rigid.
 std::string soft_partner(const Evidence& run) {
   constexpr double many = 100;
   const Experiment& experiment = run.experiment();
@@ -202,7 +202,7 @@ std::string soft_partner(const Evidence& run) {
   std::map<int, std::set<int>> materials;
   for (const BodySpecification& body : experiment.bodies)
     if (!body.frozen) materials[body.field].insert(body.material);
-  /// Of a velocity field the bodies whose speeds limit the step least and most, m/s.
+  // Of a velocity field the bodies whose speeds limit the step least and most, m/s.
   std::map<int, std::pair<double, int>> slowest, fastest;
   for (int k = 0; k < static_cast<int>(experiment.bodies.size()); ++k) {
     const BodySpecification& body = experiment.bodies[static_cast<std::size_t>(k)];

@@ -320,6 +320,17 @@ TEST_CASE("a heat map takes out a power of ten, and never shows a part of a numb
   const std::string many = text_of(folder / "many.svg");
   CHECK(many.find("3600 cells without room for the whole text") != std::string::npos);
   CHECK(many.find(">0.1<") == std::string::npos);
+  // Rows of one line of text have room for it, and nothing says that they had none.
+  HeatMap rows;
+  rows.title = "A title", rows.footnote = "a footnote";
+  rows.x_label = "strain", rows.y_label = "material", rows.value_label = "largest stable step over h/c at rest";
+  rows.x_names.assign(8, "a strain of two lines");
+  rows.y_names.assign(25, "a material");
+  rows.values.assign(200, 0.847);
+  write_figure(rows, folder / "rows");
+  const std::string whole = text_of(folder / "rows.svg");
+  CHECK(whole.find(">0.847<") != std::string::npos);
+  CHECK(whole.find("without room") == std::string::npos);
   map.x_names.clear();
   map.values.clear();
   write_figure(map, folder / "none");
