@@ -66,12 +66,49 @@ MPM_HD S volume_change(const Deformation<2, S>& L, scalar_of<S> dt) {
   return plane + around + plane * around;
 }
 
+/// The pressures of shocks that run at c + s u_p into a material at rest, u_p being the velocity behind them, over its bulk
+/// modulus: x/(1 - s x)^2 with the compression x = 1 - J, and beyond s x = mie_gruneisen_reach the tangent there. Meyers
+/// (1994), Dynamic Behavior of Materials, ch. 4.
+template <class T>
+struct ShockHugoniot {
+  T slope;  ///< s
+
+  /// A compression up to the largest for which the formula stands, and what is beyond. There is none where J > 1.
+  template <class S>
+  struct Compression {
+    S within, beyond;
+  };
+  template <class S>
+  MPM_HD Compression<S> compression(const S& x) const {
+    const S whole = max(x, S(real<S>(0))), within = min(whole, S(last()));
+    return {within, whole - within};
+  }
+  MPM_HD T last() const { return T(mie_gruneisen_reach) / slope; }
+
+  /// The pressure, and its derivative by x, at a compression for which the formula stands.
+  template <class S>
+  MPM_HD S pressure(const S& within) const {
+    const S left = real<S>(1) - slope * within;
+    return within / (left * left);
+  }
+  template <class S>
+  MPM_HD S tangent(const S& within) const {
+    const S stretched = slope * within, left = real<S>(1) - stretched;
+    return (real<S>(1) + stretched) / (left * left * left);
+  }
+  MPM_HD T last_pressure() const { return T(mie_gruneisen_reach / (remains * remains)) / slope; }
+  MPM_HD static T last_tangent() { return T((1 + mie_gruneisen_reach) / (remains * remains * remains)); }
+
+ private:
+  static constexpr double remains = 1 - mie_gruneisen_reach;
+};
+
 /// A barotropic fluid. `l` is ln J everywhere.
 template <class T>
 struct Barotropic {
-  T modulus;   ///< K, Pa
-  T exponent;  ///< n of `power`, the ratio of heat capacities of the gases
-  T slope;     ///< s of mie_gruneisen
+  T modulus;                  ///< K, Pa
+  T exponent;                 ///< n of `power`, the ratio of heat capacities of the gases
+  ShockHugoniot<T> hugoniot;  ///< of mie_gruneisen
   EquationOfState form;
   bool parts;  ///< there is no tension: where J > 1 there is no pressure
 
@@ -80,7 +117,7 @@ struct Barotropic {
   MPM_HD explicit Barotropic(const Parameters& p)
       : modulus(T(p.bulk_modulus)),
         exponent(T(p.exponent)),
-        slope(T(p.hugoniot_slope)),
+        hugoniot{T(p.hugoniot_slope)},
         form(static_cast<EquationOfState>(static_cast<int>(p.equation_of_state))),
         parts(p.tension != 0) {
     if (form == EquationOfState::stiffened_gas || form == EquationOfState::ideal_gas)
@@ -91,26 +128,6 @@ struct Barotropic {
   template <class S>
   MPM_HD S felt(const S& l) const {
     return parts ? min(l, S(real<S>(0))) : l;
-  }
-
-  /// 1 - J of mie_gruneisen up to the largest for which its formula stands, and what is beyond.
-  template <class S>
-  struct Compression {
-    S within, beyond;
-  };
-  template <class S>
-  MPM_HD Compression<S> compression(const S& change) const {
-    const S whole = max(-change, S(real<S>(0))), within = min(whole, S(real<S>(mie_gruneisen_reach) / slope));
-    return {within, whole - within};
-  }
-
-  /// p/K at the largest compression of mie_gruneisen, and its derivative by 1 - J there.
-  MPM_HD T last_pressure() const {
-    return T(mie_gruneisen_reach / ((1 - mie_gruneisen_reach) * (1 - mie_gruneisen_reach))) / slope;
-  }
-  MPM_HD static T last_tangent() {
-    constexpr double left = 1 - mie_gruneisen_reach;
-    return T((1 + mie_gruneisen_reach) / (left * left * left));
   }
 
   /// J p, Pa: the Kirchhoff pressure, positive in compression.
@@ -124,9 +141,9 @@ struct Barotropic {
       return modulus * C * (J * exponential_change(-change / C));
     }
     if (form == EquationOfState::mie_gruneisen) {
-      const Compression<S> x = compression(change);
-      const S left = real<S>(1) - slope * x.within;
-      return modulus * select(change < real<S>(0), J * (x.within / (left * left) + last_tangent() * x.beyond), -change);
+      const auto x = hugoniot.compression(S(-change));
+      return modulus * select(change < real<S>(0),
+                              J * (hugoniot.pressure(x.within) + hugoniot.last_tangent() * x.beyond), -change);
     }
     return modulus / exponent * (exp(l) * exponential_change(-(exponent * l)));
   }
@@ -141,9 +158,10 @@ struct Barotropic {
       return modulus * C * C * exponential_excess(-exponential_change(l) / C);
     }
     if (form == EquationOfState::mie_gruneisen) {
-      const Compression<S> x = compression(exponential_change(l));
-      const S within = exponential_excess(-log_of_change(-(slope * x.within))) / (slope * slope);
-      const S beyond = x.beyond * (last_pressure() + real<S>(0.5) * last_tangent() * x.beyond);
+      const auto x = hugoniot.compression(S(-exponential_change(l)));
+      const T s = hugoniot.slope;
+      const S within = exponential_excess(-log_of_change(-(s * x.within))) / (s * s);
+      const S beyond = x.beyond * (hugoniot.last_pressure() + real<S>(0.5) * hugoniot.last_tangent() * x.beyond);
       return modulus * select(l < real<S>(0), within + beyond, exponential_excess(l));
     }
     const T less = exponent - T(1);
@@ -168,9 +186,8 @@ struct Barotropic {
     }
     if (form == EquationOfState::mie_gruneisen) {
       const S change = exponential_change(l), J = exp(l);
-      const S stretched = slope * compression(change).within, left = real<S>(1) - stretched;
-      return modulus *
-             select(change < real<S>(0), J * J * (real<S>(1) + stretched) / (left * left * left), S(real<S>(1)));
+      const S within = hugoniot.compression(S(-change)).within;
+      return modulus * select(change < real<S>(0), J * J * hugoniot.tangent(within), S(real<S>(1)));
     }
     return modulus * exp((T(1) - exponent) * l);
   }
@@ -192,18 +209,21 @@ struct Barotropic {
       MPM_NUMBER_PARAMETER(hugoniot_slope, "", 1.489, 0.01, unbounded, 0,                                            \
                            "s of `mie_gruneisen`, by which shocks are faster than sound; 1.489 is copper"),          \
       MPM_CHOICE_PARAMETER(tension, "kept|none", 0, "none: there is no pressure below zero")
-/// The clamp of such a material, whose State has a `log_volume_ratio`.
-#define MPM_EQUATION_OF_STATE_CLAMPS                                                                                \
+/// The clamp of a material whose pressure is that of a ShockHugoniot while `has_pole`, with Parameters of a `hugoniot_slope`
+/// and a State of a `log_volume_ratio`.
+#define MPM_HUGONIOT_CLAMPS(has_pole)                                                                               \
   static constexpr mpm_clamp clamps[] = {                                                                           \
       {"below J =", "",                                                                                             \
        "the pressure of mie_gruneisen goes on along its tangent, as its formula has a pole ahead; pressures there " \
        "are too low"}};                                                                                             \
   static void clamp_bounds(const Parameters& p, double* bound) {                                                    \
-    const bool has_pole =                                                                                           \
-        static_cast<EquationOfState>(static_cast<int>(p.equation_of_state)) == EquationOfState::mie_gruneisen;      \
-    bound[0] = has_pole ? 1 - mie_gruneisen_reach / p.hugoniot_slope : no_bound;                                    \
+    bound[0] = (has_pole) ? 1 - mie_gruneisen_reach / p.hugoniot_slope : no_bound;                                  \
   }                                                                                                                 \
   template <class AnyState>                                                                                         \
   static unsigned acting_clamps(const double* bound, const AnyState& state) {                                       \
     return exp(state.log_volume_ratio) < bound[0] ? 1 : 0;                                                          \
   }
+/// The clamp of a material with the rows MPM_EQUATION_OF_STATE_PARAMETERS.
+#define MPM_EQUATION_OF_STATE_CLAMPS                                                         \
+  MPM_HUGONIOT_CLAMPS(static_cast<EquationOfState>(static_cast<int>(p.equation_of_state)) == \
+                      EquationOfState::mie_gruneisen)

@@ -16,6 +16,7 @@
 #include "support/csv.hpp"
 #include "support/gas_dynamics.hpp"
 #include "support/page.hpp"
+#include "support/released_copper.hpp"
 #include "support/solid_shock.hpp"
 
 using namespace mpm::test;
@@ -190,6 +191,12 @@ const std::vector<Sentence>& run_sentences() {
       {"plate_impact",
        "has # GPa and the volume ratio # behind the shock",
        {{"/probes/behind/pressure/final", 1e-9}, {"/probes/behind/volume_ratio/final"}}},
+      {"plate_impact_release",
+       "has # MJ/m³ behind the shock, and after the release # MJ/m³, a volume ratio of # and # m/s.",
+       {{"/probes/shocked/internal_energy/final", 1e-6},
+        {"/probes/released/internal_energy/final", 1e-6},
+        {"/probes/released/volume_ratio/final"},
+        {"/probes/released/velocity_x/final"}}},
       {"solid_shock",
        "has # MPa, the volume ratio # and a mean velocity of # m/s at 1.5 ms",
        {{"/probes/behind/pressure/final", 1e-6},
@@ -312,6 +319,16 @@ const std::vector<Sentence>& study_sentences() {
          "the mean over a cut is off by # %, but a particle has # % too much; at 2000 m/s # %",
          {{"cpdi-1000_m_s-c_h: " + behind}, {"cpdi-1000_m_s-c_h: " + excess}, {"cpdi-2000_m_s-c_h: " + excess}}});
     all.push_back({plates, "the mean at 500 m/s is off by # %", column(behind, {"bspline_quadratic-500_m_s-c_h"})});
+    for (const std::string transfer : {"APIC", "FLIP"})
+      for (const std::string cells : {"100", "200", "400"}) {
+        const std::string run = (transfer == "APIC" ? "apic-" : "flip-") + cells + "_cells: error of the ";
+        all.push_back({"plate_impact_release_grids",
+                       "| " + transfer + ", " + cells + " cells" + (run.starts_with("apic-100") ? " a plate" : "") +
+                           " | # % | # % | # % |",
+                       {{run + "internal energy behind the shock (%)"},
+                        {run + "internal energy after the release (%)"},
+                        {run + "velocity after the release (%)"}}});
+      }
     const std::string solid = "solid_shock_viscosity";
     const std::vector<std::array<std::string, 2>> viscosities{
         {"no viscosity", "no_viscosity"}, {"C₁ = 0.2, C₂ = 2", "C_0.2_C_2"}, {"C₁ = 0.5, C₂ = 2", "C_0.5_C_2"}};
@@ -651,6 +668,13 @@ TEST_CASE("scenes of papers expect what closed forms say", "[papers]") {
   CHECK(expected(plates, "probes.behind.pressure.final") == Approx(shock.pressure).epsilon(1e-6));
   CHECK(expected(plates, "probes.behind.volume_ratio.final") == Approx(shock.ratio).epsilon(1e-6));
   CHECK(expected(plates, "bodies.left.velocity_x.final") == Approx(shock.mean()).epsilon(1e-6));
+  const ReleasedCopper released(500);
+  const std::string apart = "plate_impact_release";
+  CHECK(expected(apart, "probes.shocked.pressure.final") == Approx(shock.pressure).epsilon(1e-6));
+  CHECK(expected(apart, "probes.shocked.internal_energy.final") == Approx(released.shocked_energy).epsilon(1e-12));
+  CHECK(expected(apart, "probes.released.volume_ratio.final") == Approx(released.ratio).epsilon(1e-8));
+  CHECK(expected(apart, "probes.released.internal_energy.final") == Approx(released.energy).epsilon(1e-7));
+  CHECK(expected(apart, "probes.released.velocity_x.final") == Approx(-released.velocity).epsilon(1e-7));
   const SolidShock solid(1e8, 0.3, 1000, 80);
   const double passed = solid.speed * 1.5e-3;  // m of the body's 1 m
   CHECK(expected("solid_shock", "probes.behind.pressure.final") == Approx(solid.pressure).epsilon(1e-7));
@@ -680,6 +704,7 @@ namespace {
 
 /// Sentences whose numbers closed forms give.
 std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
+  const ReleasedCopper released(500);
   const SolidShock solid(1e8, 0.3, 1000, 80);
   const double a = drop_semi_axis(1.5);
   const Shock shock(500);
@@ -708,6 +733,9 @@ std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
       {"(exactly # U): APIC", {poiseuille(0.5, 1)}},
       {"shocks of U_s = # m/s", {shock.speed}},
       {"pressure is ρ U_s u_p = # GPa and the volume ratio #.", {1e-9 * shock.pressure, shock.ratio}},
+      {"parameter of Gruneisen #): # MJ/m³ left of #, the volume ratio #, and # m/s the other way",
+       {ReleasedCopper::gruneisen, 1e-6 * released.energy, 1e-6 * released.shocked_energy, released.ratio,
+        released.velocity}},
       {"runs back has # m/s through the material", {solid.speed}},
       {"behind it the pressure is # MPa and the volume ratio #. Of", {1e-6 * solid.pressure, solid.stretch}},
       {"that came # % are stored", {100 * (1 - solid.dissipated / 3.2e6)}},
@@ -920,9 +948,9 @@ TEST_CASE("bounds on the page of papers hold in the tables of its studies", "[pa
 }
 
 TEST_CASE("every scene of papers comes to its exact numbers, and to those that the page prints", "[papers]") {
-  for (const std::string name :
-       {"self_weight_column", "hydrostatic_column", "elliptical_drop", "channel", "plate_impact", "thick_cylinder",
-        "gas_shock", "shock_tube", "granular_collapse", "dam_break_front", "solid_shock", "taylor_bar"}) {
+  for (const std::string name : {"self_weight_column", "hydrostatic_column", "elliptical_drop", "channel",
+                                 "plate_impact", "plate_impact_release", "thick_cylinder", "gas_shock", "shock_tube",
+                                 "granular_collapse", "dam_break_front", "solid_shock", "taylor_bar"}) {
     INFO(name);
     const Folder folder;
     const Result result = call(folder, {"run", scene_of(name).string(), "--out", "run", "--threads", "1", "--set",
@@ -975,9 +1003,10 @@ TEST_CASE("a drop of rows of particles begins too large, as the page of papers s
 }
 
 TEST_CASE("studies of papers print the tables of the page", "[papers][slow]") {
-  for (const std::string study : {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids",
-                                  "channel_times", "channel_grids", "plate_impact_speeds", "cantilever_loads",
-                                  "cantilever_tip", "thick_cylinder_pressures", "solid_shock_viscosity"}) {
+  for (const std::string study :
+       {"self_weight_column_shapes", "hydrostatic_column_laws", "elliptical_drop_grids", "channel_times",
+        "channel_grids", "plate_impact_speeds", "plate_impact_release_grids", "cantilever_loads", "cantilever_tip",
+        "thick_cylinder_pressures", "solid_shock_viscosity"}) {
     INFO(study);
     const Folder folder;
     const Result result =

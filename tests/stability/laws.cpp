@@ -165,6 +165,10 @@ TEST_CASE("the page of the material point has the speeds of waves at rest, and w
       CHECK(speed == page.read("`ideal_gas` has # m/s at rest").front().rounded());
       continue;
     }
+    if (law == "mie_gruneisen") {
+      CHECK(speed == page.read("`mie_gruneisen` has # m/s").front().rounded());
+      continue;
+    }
     least = smaller(least, speed), most = larger(most, speed);
     if (law != "johnson_cook" && !law.starts_with("von_mises")) continue;
     const auto rows = extremes_of(*plugin, 3, 1);
@@ -220,7 +224,7 @@ TEST_CASE("the page of the material point has what mpm drive every says", "[docs
   const std::size_t table = page.find("\nmaterial  ");
   const std::string block = page.substr(table, page.find("```", table) - table);
   CHECK(std::count(block.begin(), block.end(), '\n') == rows + clamps + 3);  // two lines of the head, and the end
-  CHECK(clamps == 3);
+  CHECK(clamps == 4);
   const Result wrong = call(folder, {"drive", "every"});
   CHECK(wrong.code == 2);
   CHECK(has(wrong.err, "takes --extremes"));
