@@ -393,15 +393,26 @@ void tell_apart(std::vector<RecordedRun>& runs) {
       run.file = (run.folder.parent_path().filename() / run.folder.filename()).string();
 }
 
+/// The slope of y over x, or over ln x, by the differences of rows on both sides; not a number where x does not change.
+std::vector<double> slope_of(const std::vector<double>& x, const std::vector<double>& y, bool over_logarithm) {
+  std::vector<double> slope;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, x.size() - 1);
+    slope.push_back((y[b] - y[a]) / (over_logarithm ? std::log(x[b] / x[a]) : x[b] - x[a]));
+  }
+  return slope;
+}
+
 /// Draws one curve a run and column.
 void draw_overlay(const std::vector<RecordedRun>& runs, Plot plot, const std::string& x,
                   const std::vector<std::string>& columns, const std::vector<std::string>& labels,
-                  const std::filesystem::path& stem) {
+                  const std::filesystem::path& stem, bool slope = false) {
   for (std::size_t k = 0; k < runs.size(); ++k)
     for (const std::string& y : columns) {
       const std::string run = k < labels.size() ? labels[k] : runs[k].file;
       const std::string label = columns.size() == 1 ? run : runs.size() == 1 && labels.empty() ? y : run + ", " + y;
-      plot.series.push_back({label, column(runs[k].metrics, x), column(runs[k].metrics, y)});
+      const std::vector<double> along = column(runs[k].metrics, x), values = column(runs[k].metrics, y);
+      plot.series.push_back({label, along, slope ? slope_of(along, values, plot.log_x) : values});
     }
   for (const RecordedRun& run : runs) plot.footnote += (plot.footnote.empty() ? "runs " : ", ") + run.file;
   render::write_figure(plot, stem);
@@ -420,8 +431,38 @@ Section specification_section() {
               parameter("y_label", Type::string, "", "Default: the column and its unit."),
               parameter("log_x", Type::boolean, "", "Logarithmic axis.").standard(false),
               parameter("log_y", Type::boolean, "", "Logarithmic axis.").standard(false),
+              parameter("linear_within", Type::number, "any",
+                        "Of log_y: y has both signs, and its axis is linear within this value on both sides of zero.")
+                  .above(0),
+              parameter("slope", Type::boolean, "",
+                        "Draws the slope of y over x between rows in place of y, over ln x where x is logarithmic.")
+                  .standard(false),
+              parameter("marks", Type::nested, "", "a list of places along x, {\"at\": number, \"label\": text}"),
               parameter("labels", Type::names, "", "One a run, in the order of the command line."),
           }};
+}
+
+Section mark_section() {
+  using Type = ParameterType;
+  return {"mark",
+          "a place along x",
+          {parameter("at", Type::number, "any", "Where it is, in the unit of x.").needed(),
+           parameter("label", Type::string, "", "Its name, beside the upper end of its line.").needed()}};
+}
+
+std::vector<render::PlaceMark> read_marks(const Fields& fields, ReadContext& context) {
+  std::vector<render::PlaceMark> marks;
+  if (!fields.given("marks")) return marks;
+  const Node& list = *fields.node("marks");
+  if (list.type != Node::Type::array) {
+    context.problem(list, "expected a list of places {\"at\": number, \"label\": text}");
+    return marks;
+  }
+  for (const Node& item : list.items) {
+    const Fields mark(&item, mark_section(), context);
+    marks.push_back({mark.number("at"), mark.text("label")});
+  }
+  return marks;
 }
 
 /// What `mpm figure --spec` draws, checked against the runs.
@@ -429,6 +470,7 @@ struct Specification {
   Plot plot;
   std::string x;
   std::vector<std::string> columns, labels;
+  bool slope = false;
 };
 
 Specification read_specification(const std::filesystem::path& file, const std::vector<RecordedRun>& runs) {
@@ -458,6 +500,9 @@ Specification read_specification(const std::filesystem::path& file, const std::v
   if (fields.valid("labels") && labels > 0 && labels != runs.size())
     context.problem(fields.place("labels"),
                     std::to_string(labels) + " labels for " + std::to_string(runs.size()) + " runs; give one a run");
+  if (fields.given("linear_within") && !fields.boolean("log_y"))
+    context.problem(fields.place("linear_within"), "belongs to \"log_y\": true");
+  const std::vector<render::PlaceMark> marks = read_marks(fields, context);
   if (!context.problems.empty()) throw InputError(std::move(context.problems));
 
   const auto text_or = [&](const char* key, const std::string& standard) {
@@ -471,6 +516,9 @@ Specification read_specification(const std::filesystem::path& file, const std::v
   read.plot.y_label = text_or("y_label", columns_over_time(first, read.columns).y_label);
   read.plot.log_x = fields.boolean("log_x");
   read.plot.log_y = fields.boolean("log_y");
+  if (fields.given("linear_within")) read.plot.linear_within = fields.number("linear_within");
+  read.plot.marks = marks;
+  read.slope = fields.boolean("slope");
   return read;
 }
 
@@ -559,7 +607,7 @@ int figure(const std::vector<std::filesystem::path>& folders, const std::filesys
   std::filesystem::create_directories(target);
   if (specified) {
     draw_overlay(runs, specified->plot, specified->x, specified->columns, specified->labels,
-                 target / specification.stem());
+                 target / specification.stem(), specified->slope);
   } else if (runs.size() == 1) {
     std::vector<std::string> names;
     for (const std::string& name : figure_names())

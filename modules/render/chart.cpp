@@ -122,7 +122,20 @@ Box draw_page(Canvas& canvas, const Theme& theme, const std::string& title, cons
   return {theme.margin, top, theme.width - theme.margin, bottom};
 }
 
+namespace {
+
+/// Grows like the value within `linear`, and like its logarithm beyond.
+double signed_log(double value, double linear) {
+  return std::copysign(std::log1p(std::fabs(value) / linear), value);
+}
+
+}  // namespace
+
 double Axis::fraction(double value) const {
+  if (is_log && linear_within > 0) {
+    const double first = signed_log(lo, linear_within);
+    return (signed_log(value, linear_within) - first) / (signed_log(hi, linear_within) - first);
+  }
   if (is_log) return std::log(value / lo) / std::log(hi / lo);
   return (value - lo) / (hi - lo);
 }
@@ -162,6 +175,18 @@ Axis make_axis(const Range& range, bool is_log, double pad, bool zero, int count
   return axis;
 }
 
+Axis make_signed_log_axis(const Range& range, double linear, double pad, int count) {
+  Axis axis;
+  axis.is_log = true, axis.linear_within = linear;
+  const double low = signed_log(range.lo.value_or(-linear), linear),
+               high = signed_log(range.hi.value_or(linear), linear);
+  const double air = pad * std::max(high - low, 0.1);
+  const auto value = [&](double place) { return std::copysign(linear * std::expm1(std::fabs(place)), place); };
+  axis.lo = value(low - air), axis.hi = value(high + air);
+  axis.ticks = signed_log_ticks(axis.lo, axis.hi, linear, count);
+  return axis;
+}
+
 double widest_label(const Canvas& canvas, const Theme& theme, const Ticks& ticks) {
   double widest = 0;
   for (const auto& label : ticks.labels) widest = std::max(widest, canvas.measure_text(label, theme.text));
@@ -171,7 +196,7 @@ double widest_label(const Canvas& canvas, const Theme& theme, const Ticks& ticks
 void draw_scales(Canvas& canvas, const Theme& theme, const Scales& s, bool show_x_numbers, bool show_y_numbers) {
   draw_value_numbers(canvas, theme, s, show_y_numbers);
   draw_x_axis(canvas, theme, s, show_x_numbers);
-  if (!s.y.is_log && s.y.lo < 0 && s.y.hi > 0) {
+  if ((!s.y.is_log || s.y.linear_within > 0) && s.y.lo < 0 && s.y.hi > 0) {
     const double y = s.at(s.x.lo, 0).y;
     canvas.line({s.box.x0, y}, {s.box.x1, y}, {kQuiet, 2 * theme.unit});
   }

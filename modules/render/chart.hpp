@@ -40,6 +40,7 @@ Box draw_page(Canvas& canvas, const Theme& theme, const std::string& title, cons
 struct Axis {
   double lo = 0, hi = 1;
   bool is_log = false;
+  double linear_within = 0;  ///< of a logarithmic axis: above zero both signs stand, and it is linear around zero
   Ticks ticks;
   /// The value's place along the axis: 0 at lo, 1 at hi.
   double fraction(double value) const;
@@ -54,6 +55,9 @@ struct Range {
 /// A range with air at both ends. `pad` is a fraction of the span; a constant gets a span of its own. With `zero` the
 /// range reaches to zero when that is near. `count` is how many numbers fit along the axis.
 Axis make_axis(const Range& range, bool is_log, double pad, bool zero, int count);
+
+/// An axis of both signs, linear within `linear` (> 0) and logarithmic beyond.
+Axis make_signed_log_axis(const Range& range, double linear, double pad, int count);
 
 /// Places values in a box of pixels.
 struct Scales {

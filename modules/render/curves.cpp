@@ -341,14 +341,14 @@ void check_series(std::span<const Series> series) {
   }
 }
 
-Content select(std::span<const Series> series, std::span<const Look> looks, bool log_x, bool log_y) {
+Content select(std::span<const Series> series, std::span<const Look> looks, bool positive_x, bool positive_y) {
   Content content;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const Series& s = series[k];
     Shown shown{{s.label, {}, {}, {}, s.kind, {}}, looks[k], {}};
     for (std::size_t i = 0; i < s.x.size(); ++i) {
       const bool is_finite = std::isfinite(s.x[i]) && std::isfinite(s.y[i]);
-      const bool is_positive = (!log_x || s.x[i] > 0) && (!log_y || s.y[i] > 0);
+      const bool is_positive = (!positive_x || s.x[i] > 0) && (!positive_y || s.y[i] > 0);
       if (!is_finite) ++content.not_finite;
       if (is_finite && !is_positive) ++content.not_positive;
       if (!is_finite || !is_positive) continue;
@@ -407,7 +407,8 @@ std::string remark_of(const Content& content) {
   return content.empty.empty() ? counts : joined(counts, "no data to show: " + content.empty);
 }
 
-Scales axes_of(std::span<const Content> contents, bool log_x, bool log_y, int count_x, int count_y) {
+Scales axes_of(std::span<const Content> contents, bool log_x, bool log_y, int count_x, int count_y,
+               double linear_within) {
   Range x, y;
   bool has_long_lines = false;
   for (const Content& content : contents) {
@@ -419,14 +420,15 @@ Scales axes_of(std::span<const Content> contents, bool log_x, bool log_y, int co
         y.add(v);
         if (!std::isfinite(e)) continue;
         y.add(v + e);
-        if (!log_y || v - e > 0) y.add(v - e);
+        if (!log_y || linear_within > 0 || v - e > 0) y.add(v - e);
       }
     }
   }
   const bool is_tight = has_long_lines && !log_x;
   Scales s;
   s.x = make_axis(x, log_x, is_tight ? 0 : 0.05, false, count_x);
-  s.y = make_axis(y, log_y, 0.05, true, count_y);
+  s.y = log_y && linear_within > 0 ? make_signed_log_axis(y, linear_within, 0.05, count_y)
+                                   : make_axis(y, log_y, 0.05, true, count_y);
   return s;
 }
 

@@ -40,8 +40,9 @@ std::vector<Look> looks_of(std::span<const Series> series, double u);
 /// Throws std::invalid_argument naming the series whose arrays differ in length.
 void check_series(std::span<const Series> series);
 
-/// The points that can be shown, in the order given. `looks` has one look a series.
-Content select(std::span<const Series> series, std::span<const Look> looks, bool log_x, bool log_y);
+/// The points that can be shown, in the order given. `looks` has one look a series; `positive_x` and `positive_y` leave
+/// out what is not above zero.
+Content select(std::span<const Series> series, std::span<const Look> looks, bool positive_x, bool positive_y);
 
 /// Every point shown, a row each; with `panels` the panel's title is the first column. Names of points and what
 /// dominates them have columns where a series has them.
@@ -51,8 +52,10 @@ std::string table_of(std::span<const Content> contents, const std::vector<std::s
 /// What the footnote says of points that were left out.
 std::string remark_of(const Content& content);
 
-/// Axes that hold all of the contents. `count_x` and `count_y` are how many numbers fit along them.
-Scales axes_of(std::span<const Content> contents, bool log_x, bool log_y, int count_x, int count_y);
+/// Axes that hold all of the contents. `count_x` and `count_y` are how many numbers fit along them; a logarithmic y is linear
+/// within `linear_within` where that is above zero.
+Scales axes_of(std::span<const Content> contents, bool log_x, bool log_y, int count_x, int count_y,
+               double linear_within = 0);
 
 /// The observed order: least squares of log y over log x. Nothing for an exact series, or where x does not vary. All
 /// values must be positive.

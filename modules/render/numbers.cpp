@@ -121,4 +121,22 @@ Ticks log_ticks(double lo, double hi, int count) {
   return ticks;
 }
 
+Ticks signed_log_ticks(double lo, double hi, double linear, int count) {
+  Ticks ticks;
+  const int first = static_cast<int>(std::ceil(std::log10(linear) - 1e-9));
+  const auto decades = [&](double end) { return end > linear ? std::log10(end / linear) : 0; };
+  const int stride = std::max(1, static_cast<int>(std::ceil((decades(hi) + decades(-lo)) / std::max(count, 1))));
+  const auto add = [&](double value, const std::string& label) {
+    if (value < lo || value > hi) return;
+    ticks.major.push_back(value), ticks.labels.push_back(label);
+  };
+  const int last = static_cast<int>(std::floor(std::log10(std::max({hi, -lo, linear})) + 1e-9));
+  for (int n = last; n >= first; --n)
+    if ((n - first) % stride == 0) add(-std::pow(10.0, n), std::string(kMinus) + power_of_ten(n));
+  add(0, "0");
+  for (int n = first; n <= last; ++n)
+    if ((n - first) % stride == 0) add(std::pow(10.0, n), power_of_ten(n));
+  return ticks;
+}
+
 }  // namespace mpm::render

@@ -22,6 +22,10 @@ Ticks linear_ticks(double lo, double hi, int count);
 /// Requires 0 < lo < hi.
 Ticks log_ticks(double lo, double hi, int count);
 
+/// Zero, and decades of both signs from `linear` on in [lo, hi], for an axis that is linear within it and logarithmic beyond.
+/// Requires lo < hi and linear > 0.
+Ticks signed_log_ticks(double lo, double hi, double linear, int count);
+
 /// The largest of 1, 2, 5 times a power of ten that is not above `value` (> 0).
 double nice_below(double value);
 

@@ -23,13 +23,21 @@ struct Series {
   std::vector<std::string> dominated_by = {};  ///< optional, in the table alone: the name of a point that is better
 };
 
+/// A named place along x, drawn as a thin upright line.
+struct PlaceMark {
+  double at = 0;
+  std::string label = {};
+};
+
 /// Labels carry quantity, symbol and unit: "kinetic energy T (J)". Sizes are pixels.
 struct Plot {
   std::string title = {}, x_label = {}, y_label = {}, footnote = {};
   bool log_x = false, log_y = false;
   std::vector<Series> series = {};
   bool slope_triangles = false;  ///< log-log only: the order fitted to each computed series, written on a triangle
-  bool pareto_front = false;     ///< draws the front of least x and least y of all `point` series; the rest is faded
+  double linear_within = 0;      ///< of log_y: above zero, y has both signs and is linear within it
+  std::vector<PlaceMark> marks = {};
+  bool pareto_front = false;  ///< draws the front of least x and least y of all `point` series; the rest is faded
   int width = 1600, height = 1000;
 };
 

@@ -148,6 +148,45 @@ TEST_CASE("a material point's run can be held against another, and its figures a
   CHECK(fs::is_regular_file(folder / "drawn/spec.png"));
 }
 
+// Of K (ln J)^2/2, K (J - 1)^2/2 and K ((J^2 - 1)/2 - ln J)/2 the stress is U', and its slope over ln J is J U''.
+TEST_CASE("the figure of tangents has those of the three volumetric energies, and marks stand where they are given") {
+  const Folder folder;
+  const fs::path root = MPM_SOURCE_DIR;
+  Words words{"figure"};
+  for (const std::string energy : {"logarithmic", "quadratic", "simo"}) {
+    REQUIRE(call(folder, {"run", (root / "experiments/material_point/crushed_and_torn.json").string(), "--set",
+                          "/materials/rubber/volumetric_energy=" + energy, "--out", energy})
+                .code == 0);
+    words.push_back(energy);
+  }
+  const auto drawn = [&](const std::string& spec) {
+    const Result result = call(folder, with(words, {"--spec", spec, "--out", "drawn"}));
+    INFO(result.err);
+    CHECK(result.code == 0);
+  };
+  drawn((root / "figures/material_point/volumetric_tangents.json").string());
+  int points = 0;
+  bool negative = false;
+  for (const auto& row : mpm::support::read_csv_cells((folder / "drawn/volumetric_tangents.csv").string())) {
+    if (row.size() < 4 || row[0] == "series") continue;
+    const double J = std::stod(row[2]), slope = std::stod(row[3]);
+    if (J < 0.0104 || J > 97 || J == 1) continue;  // at the ends of the ways there are no rows on both sides
+    const double exact = row[0] == "logarithmic" ? (1 - std::log(J)) / J : row[0] == "quadratic" ? J : (J + 1 / J) / 2;
+    INFO(row[0] << ", J = " << J);
+    CHECK(slope == Approx(1000 * exact).epsilon(1e-3).margin(0.1));
+    ++points, negative |= slope < 0;
+  }
+  CHECK(points > 2000);
+  CHECK(negative);
+
+  spill(folder / "marks.json", R"({"x": "volume ratio", "y": "pressure", "log_y": true,
+                                  "marks": [{"at": 0.1, "label": "one tenth"}, {"at": 1000, "label": "beyond"}]})");
+  drawn("marks.json");
+  const std::string picture = slurp(folder / "drawn/marks.svg");
+  CHECK(has(picture, ">one tenth</text>"));
+  CHECK(!has(picture, ">beyond</text>"));
+}
+
 TEST_CASE("a signal stops a material point between two steps, and what was followed is written") {
   const Folder folder;
   Json scene = pulled();

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "render/chart.hpp"
 #include "support/catch.hpp"
 
 using namespace mpm::render;
@@ -59,6 +60,21 @@ TEST_CASE("logarithmic axes mark decades and what lies between", "[figures]") {
   CHECK(huge.labels.size() <= 8);
   const Ticks within_one = log_ticks(2.1, 4.4, 5);
   CHECK(within_one.labels.size() >= 2);
+}
+
+TEST_CASE("an axis of both signs marks zero and the decades on either side of it", "[figures]") {
+  const Ticks ticks = signed_log_ticks(-300, 2e4, 1, 8);
+  CHECK(ticks.labels == std::vector<std::string>{"−10²", "−10¹", "−1", "0", "1", "10¹", "10²", "10³", "10⁴"});
+  REQUIRE(ticks.major.size() == ticks.labels.size());
+  CHECK(ticks.major.front() == -100);
+  CHECK(ticks.major.back() == 1e4);
+  CHECK(signed_log_ticks(-1e9, 1e9, 1e-3, 6).labels.size() <= 9);
+  CHECK(signed_log_ticks(0.5, 3e3, 0.1, 9).labels.front() == "1");
+  const Axis axis = make_signed_log_axis({-100, 1e4}, 1, 0, 8);
+  CHECK(axis.fraction(-100) == Approx(0).margin(1e-12));
+  CHECK(axis.fraction(1e4) == Approx(1));
+  CHECK(axis.fraction(0) == Approx(std::log(101.0) / (std::log(101.0) + std::log(10001.0))));
+  CHECK(axis.fraction(0) - axis.fraction(-0.01) == Approx(axis.fraction(0.01) - axis.fraction(0)));
 }
 
 TEST_CASE("numbers are plain or a power of ten, never 1e+05", "[figures]") {
