@@ -81,6 +81,7 @@ class Extremes {
     const Response before = point.advance(Matrix{}, ages);
     std::mt19937 random(7);
     std::uniform_real_distribution<double> between(-1e-4, 1e-4);
+    ClampWatch watch(*material_.plugin, material_.parameters);
     for (long k = 0; k < size_.cycles; ++k) {
       Matrix there{}, identity = diagonal(1, 1, 1);
       for (int i = 0; i < dimension_; ++i)
@@ -91,6 +92,7 @@ class Extremes {
       for (int k2 = 0; k2 < 9; ++k2) back.m[k2] = (back.m[k2] - identity.m[k2]) / ages, there.m[k2] /= ages;
       for (const Matrix& way : {there, back}) {
         extreme.end = point.advance(way, ages);
+        if (watch.is_waiting()) point.look_for_clamps(watch, ages * double(k)), extreme.clamps = watch.acted();
         if (!extreme.end.is_admissible) {
           extreme.outcome = extreme.end.is_taken ? Outcome::not_finite : Outcome::refused;
           return extreme;
