@@ -31,11 +31,10 @@ f(kappa)/ft. A plane that has parted has no shear strength left, nor one that ha
 fade together. So a plane that only opens dissipates Gc, one that only slides Gs, and one that has lost half of its
 tension and then slides, closed, half of Gs more.
 
-**Why shear begins no crack.** The plane of largest shear lies at 45 degrees to the stresses and there are two of
-them, equal in rank, and a solid that is pressed would break along either; which one is a matter of friction, which
-this law does not have. Shear softens the plane that tension has opened. In pure shear the largest principal stress is
-the shear stress, so that a crack begins at ft across that. Solids that crush or slide under pressure are other laws
-(`mohr_coulomb`).
+**Why shear begins no crack.** Of planes of largest shear there are two, at equal angles to the stresses and equal in
+rank. Which of them a pressed solid slides along is a matter of friction, which this law does not have. Shear softens the
+plane that tension has opened. In pure shear the largest principal stress is the shear stress, so that a crack begins at
+ft across that. Solids that slide under pressure are other laws (`mohr_coulomb`).
 
 Both laws are scaled by the band width b = `band_cells` times the cell size, as in `damage`: a crack dissipates its
 energy a unit of area on any grid. Cells are refused, with the largest usable size, unless b < 2 E Gc/ft^2 and b < 2
