@@ -282,6 +282,16 @@ TEST_CASE(
   // Open, and pulled by much along the plane: it holds a wave as a string does, by its own tension E/(1 - nu) 1.5.
   state.deformation_gradient = stretched({{1.5, 1.5, 1.5}});
   CHECK(reported(c, state) == Approx(mu + young / (1 - poisson) * 1.5).epsilon(1e-9));
+  // With lambda = 2 mu/3 the stresses are 9, 8 and 7 mu, and 9/4 mu less at the sides of a crack that is parted: from 0 to 23/4.
+  // Half of its stiffness left, from 7/2 to 59/8, and waves askew of strains that differ by 1 may have mu/4 more.
+  state.deformation_gradient = stretched({{2.5, 2, 1.5}});
+  CHECK(reported(c, state) == Approx(mu * (1 + 23. / 4 + 0.25)).epsilon(1e-9));
+  state.damage = 0.5;
+  CHECK(reported(c, state) == Approx(mu * (1 + 59. / 8 - 7. / 2 + 0.25)).epsilon(1e-9));
+  // Askew of the stresses, 22/3 and 16/3 mu, the plane has 19/3 mu, and half of the shear stress mu is left on it.
+  state.deformation_gradient = stretched({{2, 2, 1}});
+  state.crack_normal = {{std::sqrt(0.5), 0, std::sqrt(0.5)}}, state.damage = 1, state.shear_damage = 0.5;
+  CHECK(reported(c, state) == Approx(mu * (1 + 22. / 3 - 19. / 12 + 2 * 0.5 + 0.25)).epsilon(1e-9));
 }
 
 TEST_CASE("anisotropic damage: of waves along any direction in bodies with a crack none outruns the reported speed") {
