@@ -328,6 +328,18 @@ TEST_CASE("anisotropic damage: what one law has lost of its strength the other h
   half_open.pull_to(kappa, 0);
   CHECK(std::abs(half_open.stress()(0, 0)) < 1e-9 * strength);
 
+  // A plane that slides apart while it is pulled sets free the energy of the pull, ft^2/(2 M), whatever the steps; beside it the
+  // sides keep none, as they do not strain.
+  for (const int steps : {1, 50}) {
+    Particle<> pulled = barely_cracked(concrete());
+    Mat3 E = pulled.strain;
+    E(0, 1) = E(1, 0) = 2 * slip;
+    pulled.strain_to(E, steps);
+    CAPTURE(steps);
+    CHECK(pulled.heat == Approx(shear_toughness / width + strength * strength / (2 * modulus)).epsilon(1e-7));
+    CHECK(pulled.energy() < 1e-9 * strength * onset);
+  }
+
   // A plane that parts while it is sheared sets free the shear energy that it still stored, mu g^2/2.
   const double g = 0.5 * first;
   for (const int steps : {4000, 8000}) {
