@@ -101,7 +101,7 @@ Json scene_of(const Plugin& plugin, int dimension, double speed, double time_ste
        {"seeding", "lattice"},
        {"jitter", 0.2},
        {"geometry", {{"type", "ball"}, {"centre", of("[0.4, 0.4]", "[0.4, 0.4, 0.4]")}, {"radius", 0.22}}},
-       {"velocity", velocity(("(1-0.9*(y-0.4))" + change).c_str(), "0.1+0.9*(x-0.4)", "0.2+x-y")}});
+       {"velocity", velocity(("(1-0.9*(y-0.4)+0.3*(x-0.4))" + change).c_str(), "0.1+0.9*(x-0.4)", "0.2+x-y")}});
   const std::uint32_t kind = plugin.descriptor->kind;
   if (kind == MPM_CONTACT || kind == MPM_NORMAL || kind == MPM_DETECTION)
     scene["bodies"].push_back({{"name", "b"},

@@ -69,6 +69,32 @@ TEST_CASE("cells on which damage would snap back are refused with the largest us
   CHECK(refusal("{" + brittle + ", \"softening\": \"sudden\"}", "0.05").find("snap back") == std::string::npos);
 }
 
+TEST_CASE("cells on which a crack on a plane would snap back, pulled or sheared, are refused", "[config]") {
+  // E = 10 GPa, mu = E/2.4: 2 E Gc/ft^2 = 0.04 m, and 2 mu Gs/ts^2 = 0.01 m with Gs = 30 J/m^2.
+  const auto cracks = [](const std::string& more) {
+    std::string text = "{" + brittle + R"J(, "shear_strength": "5 MPa", )J" + more + "}";
+    return text.replace(text.find("damage"), 6, "anisotropic_damage");
+  };
+  const std::string weak = R"J("shear_fracture_energy": 30)J", tough = R"J("shear_fracture_energy": 300)J";
+  CHECK(refusal(cracks(weak), "0.005") == "accepted");
+  CHECK(refusal(cracks(tough), "0.02") == "accepted");
+  CHECK(refusal(cracks(weak), "0.02") ==
+        "test.json:1:41: /grid/cell_size: material \"anisotropic_damage\" cannot have \"cell_size\" 0.02 m, at most "
+        "0.01 m: at its shear strength a band this wide holds more elastic energy than its crack dissipates as it "
+        "slides, "
+        "so that it would snap back; take smaller cells or a larger shear_fracture_energy");
+  CHECK(refusal(cracks(tough), "0.05") ==
+        "test.json:1:41: /grid/cell_size: material \"anisotropic_damage\" cannot have \"cell_size\" 0.05 m, at most "
+        "0.04 m: at its tensile strength a band this wide holds more elastic energy than its crack dissipates, so that "
+        "it "
+        "would snap back; take smaller cells or a larger fracture_energy");
+  CHECK(refusal(cracks(weak + R"J(, "shear_softening": "bilinear")J"), "0.02").find("at most 0.006 m: at its shear") !=
+        std::string::npos);
+  CHECK(refusal(cracks(tough + R"J(, "softening": "bilinear")J"), "0.05", 3).find("at most 0.024 m: at its tensile") !=
+        std::string::npos);
+  CHECK(refusal(cracks(weak + R"J(, "band_cells": 2)J"), "0.02").find("at most 0.005 m") != std::string::npos);
+}
+
 TEST_CASE("a material that melts into one that would snap back is refused", "[config]") {
   const std::string melts =
       R"J(, "thermal": {"conductivity": 1, "heat_capacity": 1, "phase_change": {"temperature": 300,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "materials/anisotropic_damage/anisotropic_damage.hpp"
 #include "materials/corotated/corotated.hpp"
 #include "materials/damage/damage.hpp"
 #include "materials/drucker_prager/drucker_prager.hpp"
@@ -88,6 +89,8 @@ TEST_CASE("laws whose stress turns with the particle say so, and linear elastici
   CHECK((VonMises::traits & MPM_OBJECTIVE) != 0);
   CHECK((DruckerPrager::traits & MPM_OBJECTIVE) != 0);
   CHECK((Damage::traits & MPM_OBJECTIVE) != 0);
+  CHECK((AnisotropicDamage::traits & MPM_OBJECTIVE) != 0);
+  CHECK((AnisotropicDamage::traits & MPM_HYPERELASTIC) != 0);
   CHECK((Hencky::traits & MPM_OBJECTIVE) != 0);
   CHECK((Corotated::traits & MPM_OBJECTIVE) != 0);
   CHECK((MooneyRivlin::traits & MPM_OBJECTIVE) != 0);

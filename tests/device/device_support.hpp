@@ -23,7 +23,7 @@ inline std::string device_choice(const Plugin& plugin) {
   std::string text = "{\"type\": \"" + std::string(plugin.id()) + "\"";
   for (const mpm_parameter& parameter : plugin.parameters()) {
     if (!(parameter.flags & MPM_REQUIRED)) continue;
-    text += std::string(", \"") + parameter.name + "\": " + digits(required_value(parameter));
+    text += std::string(", \"") + parameter.name + "\": " + digits(required_value(plugin, parameter));
   }
   if (plugin.descriptor->kind == MPM_FILTER) text += ", \"every_steps\": 2";
   return text + "}";

@@ -13,7 +13,9 @@ namespace mpm::test {
 
 /// The value of a required parameter. One that has no default and is not named here stops the suite: give it a value
 /// fit for these scenes.
-inline double required_value(const mpm_parameter& parameter) {
+inline double required_value(const Plugin& plugin, const mpm_parameter& parameter) {
+  // Of glue it is what holds bodies together whatever happens, of a solid what its crack slides at.
+  if (plugin.descriptor->kind == MPM_MATERIAL && std::string(parameter.name) == "shear_strength") return 40;
   static const std::map<std::string, double> values{{"youngs_modulus", 1000},
                                                     {"poisson_ratio", 0.3},
                                                     {"density", 1000},
@@ -33,6 +35,7 @@ inline double required_value(const mpm_parameter& parameter) {
                                                     {"shear_strength", 1e5},
                                                     {"tensile_strength", 60},
                                                     {"fracture_energy", 3},
+                                                    {"shear_fracture_energy", 2},
                                                     {"youngs_modulus_axial", 1000},
                                                     {"youngs_modulus_transverse", 400},
                                                     {"poisson_ratio_axial", 0.3},
@@ -75,7 +78,7 @@ inline std::vector<std::string> variants(const Plugin& plugin) {
       std::istringstream names(parameter.choices);
       for (std::string name; std::getline(names, name, '|');) values.push_back("\"" + name + "\"");
     } else if (parameter.flags & MPM_REQUIRED) {
-      values = {digits(required_value(parameter))};
+      values = {digits(required_value(plugin, parameter))};
     } else if (std::string(parameter.name) == "friction") {
       values = {"0.2"};
     } else if (std::string(parameter.name) == "beta_max") {

@@ -40,10 +40,9 @@ solid pulls there is no damage: nothing is ever crushed.
 
 Closed cracks are as stiff as the whole solid, and without friction.
 
-**Softening is isotropic: anisotropic softening is not offered.** One number d weakens all directions in which anything pulls, so that
-a particle which a crack has crossed bears no tension along the crack either, and a second crack across the first one costs nothing
-there. A law with a strength for each direction needs a damage tensor or planes of cracks that turn with the material, as state of
-its own; it would be another law and not another choice of this one. What is pressed is not weakened, in whatever direction.
+**Softening is isotropic.** One number d weakens all directions in which anything pulls, so that a particle which a crack
+has crossed bears no tension along the crack either, and a second crack across the first one costs nothing there. What is
+pressed is not weakened, in whatever direction. `anisotropic_damage` cracks on a plane, and stays whole along it.
 
 State: F, the largest kappa and d. Stress goes to the origin on unloading, without a strain that stays. Dissipation: psi(r) dd, never
 negative. J <= 0 is refused: the run stops and names the particle. In single precision strains have 1e-7 of rounding: ft/E must be
