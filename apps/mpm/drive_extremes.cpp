@@ -153,7 +153,7 @@ class ExtremesMap {
     if (options_.out.empty()) return;
     const std::vector<std::string> all = names(map_.y_names.size());
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const std::size_t first = k * rows_of_a_figure, last = std::min(first + rows_of_a_figure, map_.y_names.size());
+      const std::size_t rows = map_.y_names.size(), first = k * rows / all.size(), last = (k + 1) * rows / all.size();
       const auto part = [&](const auto& values, std::size_t columns) {
         return std::decay_t<decltype(values)>(values.begin() + static_cast<std::ptrdiff_t>(first * columns),
                                               values.begin() + static_cast<std::ptrdiff_t>(last * columns));

@@ -280,6 +280,13 @@ TEST_CASE("drive: the figures of the extremes hold the law's closed form all alo
   const Result every = drive(folder, "every", {"--extremes", "--cycles", "10", "--out", "far"});
   CHECK(every.code == 0);
   CHECK(has(slurp(folder / "far/extremes_2.csv"), "neo_hookean,drawn by 10"));
+  // The materials stand in figures of about as many rows each.
+  std::vector<std::size_t> rows;
+  for (int k = 1; fs::exists(folder / ("far/extremes_" + std::to_string(k) + ".csv")); ++k)
+    rows.push_back(
+        mpm::support::read_csv_cells((folder / ("far/extremes_" + std::to_string(k) + ".csv")).string()).size());
+  REQUIRE(rows.size() >= 2);
+  CHECK(*std::max_element(rows.begin(), rows.end()) - *std::min_element(rows.begin(), rows.end()) <= 5);
 }
 
 TEST_CASE("drive: options that say nothing or two things are refused, and numbers have their range") {
