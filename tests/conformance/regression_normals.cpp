@@ -298,6 +298,28 @@ TEST_CASE("of equal bodies a tiny way apart, regression has the direction of tha
     }
 }
 
+TEST_CASE("of equal clouds a tiny way apart the logistic curve is a line, and its normal that of least squares") {
+  // Near z = 0 the curve is z / 2: with s' = s / 2 the penalty on s is one of four times its size on s'.
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const double way : {1e-5, 1e-6, 1e-7})
+    for (int k = 0; k < 30; ++k) {
+      const double step[] = {way * number(random), way * number(random), way * number(random)};
+      std::vector<Vec<3, double>> here, there;
+      for (int particle = 0; particle < 6; ++particle) {
+        here.push_back({{number(random), number(random), number(random)}});
+        const Vec<3, double>& from = here.back();
+        there.push_back({{from[0] + step[0], from[1] + step[1], from[2] + step[2]}});
+      }
+      const Cloud a(here), b(there);
+      double normal[3] = {};
+      CAPTURE(way, k);
+      REQUIRE(regression<LogisticRegression, 3>(1e-6, a, b, normal));
+      const Eigen::VectorXd expected = least_squares<3>(4e-6, a, b);
+      for (int i = 0; i < 3; ++i) CHECK(normal[i] == Approx(expected(i)).margin(1e-6));
+    }
+}
+
 TEST_CASE("where particles leave a direction open, the penalty of linear regression leaves it out of the normal") {
   // All particles lie on the line y = x / 2: the slope across it is free, and the least one lies along the line.
   const Cloud a({{{-0.8, -0.4, 0}}, {{-0.2, -0.1, 0}}}), b({{{0.4, 0.2, 0}}, {{1, 0.5, 0}}});
