@@ -1,6 +1,7 @@
 // What transfers make of one particle's gathered moments, by the formulas of their papers, and what they promise.
 
 #include <cmath>
+#include <type_traits>
 
 #include "kernel/lanes.hpp"
 #include "support/catch.hpp"
@@ -108,4 +109,56 @@ TEST_CASE("transfers say whether velocity and state follow from what is gathered
   CHECK_FALSE(replaces_motion<Flip>());
   CHECK_FALSE(replaces_motion<Aflip>());
   CHECK_FALSE(replaces_motion<Asflip>());
+}
+
+TEST_CASE("FLIP and AFLIP give back what a particle keeps and a share of PIC or APIC, by hand") {
+  // u = (2, -1), the increment (0.5, 0.25), v = (4, 3): FLIP's velocity is (4.5, 3.25), and a quarter of the way from there to u
+  // is (3.875, 2.1875).
+  GatheredMoments<2, double> moments{};
+  moments.velocity = {{2, -1}}, moments.velocity_increment = {{0.5, 0.25}}, moments.affine = {{1, 2, -3, 5}};
+  Vec<2, double> v{{4, 3}}, advection{};
+  Flip::State<2, double> none{};
+  Flip::gather<2, double>({0.25}, moments, 0.1, v, none, advection);
+  CHECK(v[0] == 3.875);
+  CHECK(v[1] == 2.1875);
+  CHECK(advection[0] == 2);
+  CHECK(advection[1] == -1);
+  Aflip::State<2, double> affine{};
+  v = {{4, 3}}, advection = {};
+  Aflip::gather<2, double>({0.25}, moments, 0.1, v, affine, advection);
+  CHECK(v[0] == 3.875);
+  CHECK(v[1] == 2.1875);
+  CHECK(advection[0] == 2);
+  CHECK(advection[1] == -1);
+  for (int k = 0; k < 4; ++k) CHECK(affine.affine_velocity.m[k] == moments.affine.m[k]);
+}
+
+TEST_CASE("ASFLIP moves a particle by a share of what it keeps, the larger one where its surroundings open, by hand") {
+  // As above v - u is (1.875, 3.1875). ln J goes from 0.01 by dt tr C, 0.1 times 0.1 in 2-D and 0.1 times 0.6 in 3-D.
+  const auto check = [](auto dimension, double log_ratio, double threshold, double beta) {
+    constexpr int D = decltype(dimension)::value;
+    GatheredMoments<D, double> moments{};
+    Vec<D, double> v{}, advection{};
+    moments.velocity[0] = 2, moments.velocity[1] = -1, v[0] = 4, v[1] = 3;
+    moments.velocity_increment[0] = 0.5, moments.velocity_increment[1] = 0.25;
+    const double rates[] = {0.3, -0.2, 0.5};
+    for (int i = 0; i < D; ++i) moments.affine(i, i) = rates[i];
+    moments.affine(0, 1) = 7;
+    Asflip::State<D, double> state{};
+    state.log_volume_ratio = 0.01;
+    Asflip::gather<D, double>({0.25, 0.25, 0.5, threshold}, moments, 0.1, v, state, advection);
+    CAPTURE(D, threshold);
+    CHECK(state.log_volume_ratio == Approx(log_ratio).epsilon(1e-14));
+    CHECK(v[0] == 3.875);
+    CHECK(v[1] == 2.1875);
+    CHECK(advection[0] == Approx(2 + beta * 1.875).epsilon(1e-14));
+    CHECK(advection[1] == Approx(-1 + beta * 3.1875).epsilon(1e-14));
+    for (int k = 0; k < D * D; ++k) CHECK(state.affine_velocity.m[k] == moments.affine.m[k]);
+  };
+  const std::integral_constant<int, 2> plane;
+  const std::integral_constant<int, 3> space;
+  check(plane, 0.02, 0.025, 0.25);  // pressed together
+  check(plane, 0.02, 0.015, 0.5);
+  check(space, 0.07, 0.075, 0.25);
+  check(space, 0.07, 0.065, 0.5);
 }
