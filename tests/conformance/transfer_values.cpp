@@ -1,7 +1,9 @@
 // What transfers make of one particle's gathered moments, by the formulas of their papers, and what they promise.
 
 #include <cmath>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include "kernel/lanes.hpp"
 #include "support/catch.hpp"
@@ -76,6 +78,18 @@ double largest_returned_spin() {
 template <class Transfer>
 bool replaces_motion() {
   return (Transfer::traits & MPM_REPLACES_MOTION) != 0;
+}
+
+/// The names of the transfers that have a trait.
+std::string transfers_with(unsigned trait) {
+  const std::pair<const char*, unsigned> transfers[] = {
+      {"pic", Pic::traits},         {"flip", Flip::traits},   {"apic", Apic::traits},
+      {"mls", Mls::traits},         {"tpic", Tpic::traits},   {"rpic", Rpic::traits},
+      {"polypic", Polypic::traits}, {"aflip", Aflip::traits}, {"asflip", Asflip::traits}};
+  std::string names;
+  for (const auto& [name, traits] : transfers)
+    if (traits & trait) names += (names.empty() ? "" : " ") + std::string(name);
+  return names;
 }
 
 }  // namespace
@@ -161,4 +175,18 @@ TEST_CASE("ASFLIP moves a particle by a share of what it keeps, the larger one w
   check(plane, 0.02, 0.015, 0.5);
   check(space, 0.07, 0.075, 0.25);
   check(space, 0.07, 0.065, 0.5);
+}
+
+TEST_CASE("transfers read of the grid what the formulas of their papers have") {
+  CHECK(transfers_with(MPM_GATHERS_AFFINE) == "apic mls rpic polypic aflip asflip");
+  CHECK(transfers_with(MPM_GATHERS_GRADIENT) == "tpic");
+  CHECK(transfers_with(MPM_GATHERS_INCREMENT) == "flip aflip asflip");  // v- beside v+
+  CHECK(transfers_with(MPM_SCATTERS_AFFINE) == "apic mls tpic rpic polypic aflip asflip");
+  // Of what FLIP keeps beside it the affine part holds no energy: AFLIP and ASFLIP start it with the gradient alone.
+  CHECK(transfers_with(MPM_AFFINE_CARRIES_ENERGY) == "apic mls tpic rpic polypic");
+  CHECK(transfers_with(MPM_STARTS_WITH_GRADIENT) == "aflip asflip");
+  CHECK(transfers_with(MPM_STRESS_BY_AFFINE) == "mls");
+  CHECK(transfers_with(MPM_STRAIN_BY_AFFINE) == "mls");
+  CHECK(transfers_with(MPM_READS_SECOND_MOMENT) == "rpic");
+  CHECK(transfers_with(MPM_KEEPS_SPIN_ONLY) == "rpic");
 }
