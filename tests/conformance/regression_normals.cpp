@@ -118,6 +118,47 @@ Eigen::VectorXd logistic_fit(double penalty, const Cloud& a, const Cloud& b) {
   return Eigen::VectorXd(plane.head(D)).normalized();
 }
 
+/// Two clouds of one to eleven particles that overlap, of one weight or of weights that differ up to e^4 times.
+std::pair<Cloud, Cloud> overlapping_clouds(unsigned seed, int D, bool are_even) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<Vec<3, double>> places[2];
+  std::vector<double> weights[2];
+  int counts[2];
+  for (int& count : counts) count = 1 + static_cast<int>(5.5 * (1 + number(random)));
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < counts[side]; ++k) {
+      const double x = 1.5 * number(random) + (side == 0 ? -0.3 : 0.3), y = 1.5 * number(random);
+      places[side].push_back({{x, y, D == 3 ? 1.5 * number(random) : 0}});
+      weights[side].push_back(are_even ? 0.5 : std::exp(2 * number(random)));
+    }
+  std::pair<Cloud, Cloud> clouds{places[0], places[1]};
+  std::copy(weights[0].begin(), weights[0].end(), clouds.first.weight.begin());
+  std::copy(weights[1].begin(), weights[1].end(), clouds.second.weight.begin());
+  return clouds;
+}
+
+/// Holds the normal of overlapping clouds against the plane that MINPACK's method follows while the penalty falls from 1.
+template <int D>
+void check_falling_penalty(unsigned seed, bool are_even) {
+  const auto [a, b] = overlapping_clouds(seed, D, are_even);
+  double normal[3] = {};
+  CAPTURE(D, seed, are_even, a.count, b.count);
+  REQUIRE(regression<LogisticRegression, D>(1e-6, a, b, normal));
+  Eigen::VectorXd planes[2];
+  for (const int factor : {10, 3}) {
+    Eigen::VectorXd& plane = planes[factor == 3];
+    plane = Eigen::VectorXd::Zero(D + 1);
+    for (double penalty = 1; penalty > 1.01e-6; penalty /= factor) plane = logistic_plane<D>(penalty, a, b, plane);
+    plane = logistic_plane<D>(1e-6, a, b, plane);
+  }
+  const Eigen::VectorXd expected = planes[0].head(D).normalized();
+  for (int i = 0; i < D; ++i) {
+    REQUIRE(planes[1].head(D).normalized()(i) == Approx(expected(i)).margin(1e-7));  // one minimum is come to
+    CHECK(normal[i] == Approx(expected(i)).margin(1e-6));
+  }
+}
+
 struct Moments {
   template <class S>
   void operator()(const Vec<3, S>& place, const S& weight, S* values) const {
@@ -217,6 +258,68 @@ TEST_CASE("logistic regression has that normal too where a plane parts two latti
   }
 }
 
+TEST_CASE("logistic regression follows the minimum as the penalty falls, where other ways end elsewhere or too soon") {
+  // Found among some thousand clouds: each is one where a step without its safeguards comes to another minimum or to none.
+  for (const unsigned seed : {7u, 184u, 494u, 952u, 1127u, 2861u}) check_falling_penalty<2>(seed, true);
+  for (const unsigned seed : {12u, 267u, 514u}) check_falling_penalty<3>(seed, true);
+  check_falling_penalty<2>(1415, false);
+  check_falling_penalty<3>(1263, false);
+}
+
+TEST_CASE("of equal bodies a tiny way apart, regression has the direction of that way") {
+  // Corners of a square or cube have the same moment along all axes, so that the slope of least squares lies along the way;
+  // the slope is so small that the logistic curve is a line.
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const double way : {1e-6, 1e-7, 3e-8})
+    for (int k = 0; k < 20; ++k) {
+      const double middle[] = {number(random), number(random), number(random)};
+      Eigen::Vector3d along(number(random), number(random), k % 2 ? 0 : number(random));
+      along.normalize();
+      std::vector<Vec<3, double>> here, there;
+      for (int corner = 0; corner < (k % 2 ? 4 : 8); ++corner) {
+        Vec<3, double> place{};
+        for (int i = 0; i < (k % 2 ? 2 : 3); ++i) place[i] = middle[i] + (corner >> i & 1 ? 0.5 : -0.5);
+        here.push_back(place);
+        for (int i = 0; i < 3; ++i) place[i] += way * along(i);
+        there.push_back(place);
+      }
+      const Cloud a(here), b(there);
+      double of_line[3] = {}, of_curve[3] = {};
+      CAPTURE(way, k);
+      REQUIRE((k % 2 ? regression<LinearRegression, 2>(1e-6, a, b, of_line)
+                     : regression<LinearRegression, 3>(1e-6, a, b, of_line)));
+      REQUIRE((k % 2 ? regression<LogisticRegression, 2>(1e-6, a, b, of_curve)
+                     : regression<LogisticRegression, 3>(1e-6, a, b, of_curve)));
+      for (int i = 0; i < (k % 2 ? 2 : 3); ++i) {
+        CHECK(of_line[i] == Approx(along(i)).margin(1e-7));
+        CHECK(of_curve[i] == Approx(along(i)).margin(1e-7));
+      }
+    }
+}
+
+TEST_CASE("of equal clouds a tiny way apart the logistic curve is a line, and its normal that of least squares") {
+  // Near z = 0 the curve is z / 2: with s' = s / 2 the penalty on s is one of four times its size on s'.
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const double way : {1e-5, 1e-6, 1e-7})
+    for (int k = 0; k < 30; ++k) {
+      const double step[] = {way * number(random), way * number(random), way * number(random)};
+      std::vector<Vec<3, double>> here, there;
+      for (int particle = 0; particle < 6; ++particle) {
+        here.push_back({{number(random), number(random), number(random)}});
+        const Vec<3, double>& from = here.back();
+        there.push_back({{from[0] + step[0], from[1] + step[1], from[2] + step[2]}});
+      }
+      const Cloud a(here), b(there);
+      double normal[3] = {};
+      CAPTURE(way, k);
+      REQUIRE(regression<LogisticRegression, 3>(1e-6, a, b, normal));
+      const Eigen::VectorXd expected = least_squares<3>(4e-6, a, b);
+      for (int i = 0; i < 3; ++i) CHECK(normal[i] == Approx(expected(i)).margin(1e-6));
+    }
+}
+
 TEST_CASE("where particles leave a direction open, the penalty of linear regression leaves it out of the normal") {
   // All particles lie on the line y = x / 2: the slope across it is free, and the least one lies along the line.
   const Cloud a({{{-0.8, -0.4, 0}}, {{-0.2, -0.1, 0}}}), b({{{0.4, 0.2, 0}}, {{1, 0.5, 0}}});
@@ -250,7 +353,7 @@ TEST_CASE("where no direction tells bodies apart, or one of them has no weight, 
   Cloud far({{{-1.7, 0, 0}}, {{-1.6, 0.2, 0}}});
   std::fill(far.weight.begin(), far.weight.end(), 0.0);
   double normal[3] = {};
-  for (const double penalty : {1e-12, 1e-6, 1.0})
+  for (const double penalty : {1e-12, 1e-9, 1e-6, 1.0})
     for (const auto& [a, b] :
          {std::pair(Cloud(places), Cloud(places)), std::pair(far, Cloud(places)), std::pair(Cloud(places), far)}) {
       CAPTURE(penalty, a.count, b.count);
@@ -259,4 +362,30 @@ TEST_CASE("where no direction tells bodies apart, or one of them has no weight, 
       CHECK_FALSE(regression<LogisticRegression, 2>(penalty, a, b, normal));
       CHECK_FALSE(regression<LogisticRegression, 3>(penalty, a, b, normal));
     }
+}
+
+TEST_CASE("beside a body without weight regression has no normal, whatever directions the other one leaves open") {
+  // Across the line of these particles the slope is a rounding that a small penalty alone divides.
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> number(-1, 1);
+  Cloud far({{{-1.7, 0, 0}}, {{-1.6, 0.2, 0}}});
+  std::fill(far.weight.begin(), far.weight.end(), 0.0);
+  double normal[3] = {};
+  for (int k = 0; k < 20; ++k) {
+    const double middle[] = {number(random), number(random), number(random)}, angle = 4 * number(random);
+    std::vector<Vec<3, double>> places;
+    for (int i = 0; i < 3; ++i) {
+      const double way = 0.5 * number(random);
+      places.push_back({{middle[0] + way * std::cos(angle), middle[1] + way * std::sin(angle), middle[2]}});
+    }
+    const Cloud line(places, &random);
+    CAPTURE(k);
+    for (const double penalty : {1e-12, 1e-9})
+      for (const auto& [a, b] : {std::pair(far, line), std::pair(line, far)}) {
+        CHECK_FALSE(regression<LinearRegression, 2>(penalty, a, b, normal));
+        CHECK_FALSE(regression<LinearRegression, 3>(penalty, a, b, normal));
+        CHECK_FALSE(regression<LogisticRegression, 2>(penalty, a, b, normal));
+        CHECK_FALSE(regression<LogisticRegression, 3>(penalty, a, b, normal));
+      }
+  }
 }

@@ -80,6 +80,11 @@ TEMPLATE_TEST_CASE("lanes exp at the ends of its range", "", float, double) {
   CHECK(exp_of<TestType>(Limits::denorm_min()) == 1);
   CHECK(exp_of<TestType>(1000) == Limits::infinity());
   CHECK(exp_of<TestType>(-1000) == 0);
+  const TestType most = std::log(Limits::max());
+  for (const TestType times : {TestType(1.2), TestType(1.5), TestType(4)}) {  // less than the smallest number as well
+    CHECK(exp_of(times * most) == Limits::infinity());
+    CHECK(exp_of(-times * most) == 0);
+  }
   CHECK(exp_of<TestType>(Limits::infinity()) == Limits::infinity());
   CHECK(exp_of<TestType>(-Limits::infinity()) == 0);
   CHECK(std::isnan(exp_of<TestType>(Limits::quiet_NaN())));

@@ -116,3 +116,12 @@ TEST_CASE("the eigenvalue bound is a bound, and exact for axisymmetric tensors s
   CHECK(largest_eigenvalue_bound(Sym3{{4, 1, 1, 0, 0, 0}}) == Approx(4).epsilon(1e-15));
   CHECK(largest_eigenvalue_bound(Sym3::identity()) == 1);
 }
+
+TEST_CASE(
+    "tensors lie in memory as plugins' states do: of a plane a symmetric one has zz too, and so has a deformation") {
+  CHECK(sizeof(Sym2) == 4 * sizeof(double));  // xx yy zz xy
+  CHECK(sizeof(Sym3) == 6 * sizeof(double));
+  CHECK(sizeof(Deformation<2, double>) == 5 * sizeof(double));  // xx xy yx yy zz
+  CHECK(sizeof(Deformation<3, double>) == 9 * sizeof(double));
+  CHECK(Deformation<2, double>::dimension == 2);
+}

@@ -42,12 +42,16 @@ struct LinearRegression {
       }
   }
 
-  /// Minimizes sum w (c - b - s . x)^2 + penalty s^2 over the slope s, 1/cell, and b: s points to the labels +1, of b.
+  /// Minimizes sum w (c - b - s . x)^2 + penalty s^2 over the slope s, 1/cell, and b: s points to the labels +1, of b. There
+  /// is no normal where one body's particles have no weight, or the slope is what rounding makes of labels that follow no
+  /// direction.
   template <int D, class Points>
   MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     double m[D + 1][D + 1] = {}, rhs[D + 1] = {};
     add<D>(points.a, -1, m, rhs);
     add<D>(points.b, 1, m, rhs);
+    // Of one body alone the slope is 0 to rounding, which a small penalty divides.
+    if (!(abs(rhs[D]) < m[D][D])) return false;
     for (int i = 0; i < D; ++i) m[i][i] += p.penalty;
     // The offset goes first, as its equation has no penalty: elimination then centres the others on their mean.
     double turned[D + 1][D + 1], unknown[D + 1];

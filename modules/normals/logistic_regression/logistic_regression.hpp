@@ -101,18 +101,19 @@ struct LogisticRegression {
   /// the plane z = 0, where f has the slope 1/2, is linear regression. Where a plane parts the bodies the slope has a long
   /// way to grow, and all but the particles next to the plane have their whole error behind them: the penalty begins high
   /// and falls with each step, so that a step finds the plane next to the one before; it falls faster where the normal does
-  /// not turn.
+  /// not turn. Returns false where one body has no weight.
   template <int D, class Points>
-  MPM_HD static Plane<D> fitted(const Parameters& p, const Points& points) {
+  MPM_HD static bool fit(const Parameters& p, const Points& points, Plane<D>& plane) {
     constexpr int most_sums = 200;
     constexpr double little = 1e-5, least_share = 1e-6, first_penalty = 1, kept = 0.4, kept_at_rest = 0.01;
-    Plane<D> plane{};
+    plane = {};
     double penalty = max(first_penalty, p.penalty), share = 1, step[D + 1];
     Sums<D> sums = sums_of<D>(penalty, points, plane, Curvature::not_negative);
     Vec<D, double> direction{};
     // At the plane z = 0 these are the sums of w c and of w: they are as large where one body has no weight.
     const bool has_both = 2 * abs(sums.values[first_of_row(D)]) < sums.cost();
-    if (!has_both || !sums.find_step(step)) return plane;
+    if (!has_both) return false;
+    if (!sums.find_step(step)) return true;
     for (int count = 1; count < most_sums && share > least_share; ++count) {
       const Plane<D> next = moved<D>(plane, step, share);
       const Sums<D> there = sums_of<D>(penalty, points, next, Curvature::not_negative);
@@ -133,7 +134,7 @@ struct LogisticRegression {
       penalty = less, share = 1;
       if (!sums.find_step(step)) break;
     }
-    return plane;
+    return true;
   }
 
   /// The plane that is fitted, and a few steps with all of the curvature where that is positive, which come to the minimum
@@ -143,7 +144,8 @@ struct LogisticRegression {
   MPM_HD static bool find(const Parameters& p, const Points& points, double* normal) {
     constexpr int steps = 4;
     constexpr double least_slope = 1e-9;
-    Plane<D> plane = fitted<D>(p, points);
+    Plane<D> plane;
+    if (!fit<D>(p, points, plane)) return false;
     Sums<D> sums = sums_of<D>(p.penalty, points, plane, Curvature::whole);
     double step[D + 1];
     for (int count = 0; count < steps; ++count) {
