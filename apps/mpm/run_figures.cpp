@@ -397,7 +397,8 @@ void tell_apart(std::vector<RecordedRun>& runs) {
 std::vector<double> slope_of(const std::vector<double>& x, const std::vector<double>& y, bool over_logarithm) {
   std::vector<double> slope;
   for (std::size_t k = 0; k < x.size(); ++k) {
-    const std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, x.size() - 1);
+    std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, x.size() - 1);
+    if ((x[b] - x[k]) * (x[k] - x[a]) < 0) a = k;  // x turns back here: the slope is that of the way that begins
     slope.push_back((y[b] - y[a]) / (over_logarithm ? std::log(x[b] / x[a]) : x[b] - x[a]));
   }
   return slope;
@@ -460,6 +461,7 @@ std::vector<render::PlaceMark> read_marks(const Fields& fields, ReadContext& con
   }
   for (const Node& item : list.items) {
     const Fields mark(&item, mark_section(), context);
+    if (mark.valid("label") && mark.text("label").empty()) context.problem(mark.place("label"), "the name is empty");
     marks.push_back({mark.number("at"), mark.text("label")});
   }
   return marks;
@@ -500,6 +502,10 @@ Specification read_specification(const std::filesystem::path& file, const std::v
   if (fields.valid("labels") && labels > 0 && labels != runs.size())
     context.problem(fields.place("labels"),
                     std::to_string(labels) + " labels for " + std::to_string(runs.size()) + " runs; give one a run");
+  for (const RecordedRun& run : runs)
+    if (fields.boolean("slope") && run.metrics.columns.front().size() < 2)
+      context.problem(fields.place("slope"),
+                      "run " + run.folder.string() + " has one row of numbers; a slope needs two");
   if (fields.given("linear_within") && !fields.boolean("log_y"))
     context.problem(fields.place("linear_within"), "belongs to \"log_y\": true");
   const std::vector<render::PlaceMark> marks = read_marks(fields, context);
@@ -519,6 +525,7 @@ Specification read_specification(const std::filesystem::path& file, const std::v
   if (fields.given("linear_within")) read.plot.linear_within = fields.number("linear_within");
   read.plot.marks = marks;
   read.slope = fields.boolean("slope");
+  if (read.slope && !fields.given("y_label")) read.plot.y_label = "slope of " + read.columns.front();
   return read;
 }
 

@@ -136,7 +136,7 @@ Ticks signed_log_ticks(double lo, double hi, double linear, int count) {
   add(0, "0");
   for (int n = first; n <= last; ++n)
     if ((n - first) % stride == 0) add(std::pow(10.0, n), power_of_ten(n));
-  return ticks;
+  return ticks.major.size() < 3 ? linear_ticks(lo, hi, count) : ticks;
 }
 
 }  // namespace mpm::render

@@ -23,21 +23,38 @@ EndLabel end_label(const Shown& shown, const Scales& s, double u) {
           }};
 }
 
+bool stands_within(const PlaceMark& mark, const Axis& axis) {
+  const double along = axis.fraction(mark.at);
+  return along >= 0 && along <= 1;
+}
+
 /// Upright lines at named places, each with its name beside its upper end; names that would overlap go below one another.
 void draw_places(Canvas& canvas, const Theme& theme, const Scales& s, const std::vector<PlaceMark>& marks) {
-  double row = 0, taken_to = -1e9;
+  struct Taken {
+    double from, to;
+  };
+  std::vector<std::vector<Taken>> rows;
   for (const PlaceMark& mark : marks) {
-    const double along = s.x.fraction(mark.at);
-    if (!(along >= 0 && along <= 1)) continue;
-    const double x = s.at(mark.at, s.y.lo).x, gap = 0.4 * theme.text,
-                 width = canvas.measure_text(mark.label, theme.text);
-    const bool fits = x + gap + width <= s.box.x1;
-    row = x < taken_to ? row + 1 : 0;
-    taken_to = std::max(taken_to, x + gap + width);
-    canvas.line({x, s.box.y0 + row * 1.35 * theme.text}, {x, s.box.y1},
-                {kQuiet, 1.5 * theme.unit, {6 * theme.unit, 5 * theme.unit}});
-    canvas.text({fits ? x + gap : x - gap, s.box.y0 + row * 1.35 * theme.text}, mark.label,
-                theme.style(kQuiet, fits ? Anchor::start : Anchor::end, Baseline::top));
+    if (!stands_within(mark, s.x)) continue;
+    const double x = s.at(mark.at, s.y.lo).x, gap = 0.4 * theme.text;
+    const std::string label = shortened(canvas, mark.label, theme.text, std::max(x - s.box.x0, s.box.x1 - x) - gap);
+    const double width = canvas.measure_text(label, theme.text) + gap;
+    const bool right = x + width <= s.box.x1;
+    const Taken mine = right ? Taken{x, x + width} : Taken{x - width, x};
+    const auto is_free = [&](const std::vector<Taken>& row) {
+      return std::none_of(row.begin(), row.end(),
+                          [&](const Taken& other) { return mine.from < other.to && other.from < mine.to; });
+    };
+    const auto found = std::find_if(rows.begin(), rows.end(), is_free);
+    const auto row = static_cast<double>(found - rows.begin());
+    if (found == rows.end())
+      rows.push_back({mine});
+    else
+      found->push_back(mine);
+    const double top = s.box.y0 + row * 1.35 * theme.text;
+    canvas.line({x, top}, {x, s.box.y1}, {kQuiet, 1.5 * theme.unit, {6 * theme.unit, 5 * theme.unit}});
+    canvas.text({right ? x + gap : x - gap, top}, label,
+                theme.style(kQuiet, right ? Anchor::start : Anchor::end, Baseline::top));
   }
 }
 
@@ -45,10 +62,13 @@ void draw_plot(Canvas& canvas, const Plot& plot, const Theme& theme, Content& co
   std::string footnote = plot.footnote;
   const bool has_slopes = plot.slope_triangles && plot.log_x && plot.log_y;
   if (has_slopes) footnote = joined(footnote, "triangles: observed order, least squares over all points");
-  const Box page = draw_page(canvas, theme, plot.title, joined(footnote, remark_of(content)));
   Scales s =
       axes_of({&content, 1}, plot.log_x, plot.log_y, std::clamp(static_cast<int>(theme.width / theme.text / 7), 2, 9),
               std::clamp(static_cast<int>(theme.height / theme.text / 6), 2, 8), plot.linear_within);
+  const auto outside = static_cast<std::size_t>(std::count_if(
+      plot.marks.begin(), plot.marks.end(), [&](const PlaceMark& mark) { return !stands_within(mark, s.x); }));
+  footnote = joined(footnote, counted(outside, "mark", "outside the axis, left out"));
+  const Box page = draw_page(canvas, theme, plot.title, joined(footnote, remark_of(content)));
 
   std::vector<std::string> names;
   bool all_end_right = true;

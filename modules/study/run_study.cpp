@@ -53,8 +53,9 @@ class Task {
       return;
     }
     const Status status = outcome.status;
-    if (status == Status::refused || status == Status::machine_failed || status == Status::interrupted) {
-      over_ = true;  // such an outcome says nothing about stability
+    if (status == Status::refused || status == Status::machine_failed || status == Status::interrupted ||
+        status == Status::crashed) {
+      over_ = true;  // such an outcome says nothing about stability: an unstable run ends with a reason
       result_.outcome = outcome;
       result_.outcome.reason = "at " + number_text(*search_->next()) + ": " + outcome.reason;
       return;

@@ -34,6 +34,8 @@ void make_folder(const fs::path& folder) {
   if (error) throw support::MachineError::from_errno("create the folder", folder, error.value());
 }
 
+constexpr int code_not_started = 127;  ///< of a child that could not become the program, as a shell has it
+
 /// Becomes the program, in the child. Only calls that are safe after a fork are made.
 [[noreturn]] void become(std::vector<char*>& words, const char* log) {
   ::setpgid(0, 0);                     // Ctrl-C reaches the study alone, which asks its runs to stop
@@ -43,7 +45,7 @@ void make_folder(const fs::path& folder) {
   if (file >= 0) ::dup2(file, 1), ::dup2(file, 2);
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) ::signal(signal, SIG_DFL);
   ::execv(words[0], words.data());
-  _exit(127);
+  _exit(code_not_started);
 }
 
 }  // namespace
@@ -206,6 +208,8 @@ Outcome Runner::outcome_of(const std::string& name, int wait_status) const {
   if (code == 3 && known) return {Status::failed, reason, false, ending.value("cause", "")};
   if (code == 2) return {Status::refused, last_lines(name)};
   if (code == 5) return {Status::machine_failed, known && !reason.empty() ? reason : last_lines(name)};
+  if (code == code_not_started)
+    return {Status::machine_failed, program_.string() + " could not be started: it was moved, or is being built"};
   if (code == 130) return {Status::interrupted, "stopped by a signal"};
   return {Status::crashed, "ended with code " + std::to_string(code) + ": " + last_lines(name)};
 }

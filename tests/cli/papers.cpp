@@ -733,7 +733,8 @@ std::vector<std::pair<std::string, std::vector<double>>> exact_sentences() {
       {"(exactly # U): APIC", {poiseuille(0.5, 1)}},
       {"shocks of U_s = # m/s", {shock.speed}},
       {"pressure is ρ U_s u_p = # GPa and the volume ratio #.", {1e-9 * shock.pressure, shock.ratio}},
-      {"parameter of Gruneisen #): # MJ/m³ left of #, the volume ratio #, and # m/s the other way",
+      {"parameter of Gruneisen #): # MJ/m³ of internal energy are left of #, the volume ratio is #, and the copper "
+       "moves with # m/s",
        {ReleasedCopper::gruneisen, 1e-6 * released.energy, 1e-6 * released.shocked_energy, released.ratio,
         released.velocity}},
       {"runs back has # m/s through the material", {solid.speed}},

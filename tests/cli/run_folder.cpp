@@ -483,6 +483,7 @@ TEST_CASE("mpm figure draws one run again and lays several over one another") {
   specification_refused("{\"y\": \"momentum x\", \"linear_within\": 1}", "/linear_within: belongs to \"log_y\": true");
   specification_refused("{\"y\": \"momentum x\", \"marks\": {\"at\": 1}}", "/marks: expected a list of places");
   specification_refused("{\"y\": \"momentum x\", \"marks\": [{\"at\": 1}]}", "/marks/0/label: missing key");
+  specification_refused("{\"y\": \"momentum x\", \"marks\": [{\"at\": 1, \"label\": \"\"}]}", "the name is empty");
   specification_refused("{\"y\": 3}", "spec.json:1:7: /y: expected ");
   specification_refused("{\"y\": \"momentum x\", \"labels\": [\"one\"]}", "1 labels for 2 runs; give one a run");
   specification_refused("{\"y\" \"momentum x\"}", "spec.json:1:6: ");

@@ -305,6 +305,25 @@ TEST_CASE("a bisection that sets something for its search measures the scene wit
   CHECK(has(run_study(folder, {"--set", "/solver/end_time=1"}).out, "1 reused"));
 }
 
+TEST_CASE("a run of a bisection that is killed ends the search, and is no unstable step") {
+  const Folder folder;
+  Json study = small_study();
+  study["axes"] = {{"/transfer/type", {"flip"}}};
+  study["bisect"] = {{"pointer", "/solver/time_step"}, {"from", 0.001}, {"to", 0.01}};
+  write_inputs(folder, endless_ball(), study);
+  Process process(folder, program({"study", "s.json", "--out", "out", "--jobs", "1"}));
+  REQUIRE(process.wait_until([&] { return rows_written(folder / "out/runs/flip@0.001/metrics.csv", 20); }));
+  REQUIRE(children_of(process.id()).size() == 1);
+  ::kill(children_of(process.id())[0], SIGKILL);
+  const Result ended = process.finish();
+  INFO(ended.out << ended.err);
+  CHECK(ended.code == 4);
+  const Json run = run_named(json_in(folder / "out/study.json"), "flip");
+  CHECK(run["status"] == "crashed");
+  CHECK(has(run["reason"], "at 0.001: ended by SIGKILL"));
+  CHECK(!has(run["reason"], "unstable"));
+}
+
 TEST_CASE("a run that is killed is recorded, and run again by the next call") {
   const Folder folder;
   Json study = small_study();

@@ -70,6 +70,7 @@ TEST_CASE("an axis of both signs marks zero and the decades on either side of it
   CHECK(ticks.major.back() == 1e4);
   CHECK(signed_log_ticks(-1e9, 1e9, 1e-3, 6).labels.size() <= 9);
   CHECK(signed_log_ticks(0.5, 3e3, 0.1, 9).labels.front() == "1");
+  CHECK(signed_log_ticks(-5e5, 1e3, 1e9, 8).labels.size() >= 3);  // no decade is in the range
   const Axis axis = make_signed_log_axis({-100, 1e4}, 1, 0, 8);
   CHECK(axis.fraction(-100) == Approx(0).margin(1e-12));
   CHECK(axis.fraction(1e4) == Approx(1));

@@ -21,7 +21,7 @@ The pressure p(J), J = density at rest over density, has the modulus K = `bulk_m
 
 They agree near J = 1. Pressures are those above the pressure p0 at rest, and depend on J alone: what viscosity turns to heat does not
 come back as pressure. A strong shock through a gas so ends too dense (a gas that is heated resists more), and `mie_gruneisen` is
-right on its Hugoniot, where shocks end, and has no thermal part beside it (the material `mie_gruneisen` has). An ideal gas at one
+right on its Hugoniot, where shocks end, and has no thermal part beside it: for that take the material `mie_gruneisen`. An ideal gas at one
 temperature is `linear` with K = p0.
 Gases are for confined use: what lies outside presses with p0 on every free surface.
 
