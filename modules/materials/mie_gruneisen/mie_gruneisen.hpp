@@ -109,7 +109,7 @@ struct MieGruneisen {
       MPM_NUMBER_PARAMETER(bulk_modulus, "Pa", required, 0.0, unbounded, MPM_ABOVE_MINIMUM,
                            "bulk modulus K at rest, density times the square of the shocks' slowest speed c"),
       MPM_NUMBER_PARAMETER(density, "kg/m^3", required, 0.0, unbounded, MPM_ABOVE_MINIMUM, "density at rest"),
-      MPM_NUMBER_PARAMETER(hugoniot_slope, "", 1.489, 0.01, 1000.0, 0,
+      MPM_NUMBER_PARAMETER(hugoniot_slope, "", 1.489, 0.01, 4.0, 0,
                            "s, by which shocks are faster than sound: c + s u_p; 1.489 is copper"),
       MPM_NUMBER_PARAMETER(gruneisen_parameter, "", 1.99, 0.01, unbounded, 0,
                            "G, pressure by heat over heat per volume at rest; 1.99 is copper"),
