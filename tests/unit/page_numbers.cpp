@@ -367,7 +367,7 @@ std::vector<double> follows(const std::string& id) {
   if (id == "snow") return {1 - std::log(100) / 10, 1 + std::log(100) / 10};  // exp(xi (1 - J_P)) with the default xi
   if (id == "newtonian_fluid") return {1 - 0.9 / 1.489};
   if (id == "mie_gruneisen") return {1 - 0.9 / 1.489, 1.9 / 0.9};  // where f of 1 - J = 0.9/s stops to grow
-  constexpr double first_of_two_lines = 0.8 / (1 - 1. / 3);  // where it ends over how far it falls, `bilinear`
+  constexpr double first_of_two_lines = 0.8 / (1 - 1. / 3);        // where it ends over how far it falls, `bilinear`
   if (id == "anisotropic_damage") return {first_of_two_lines};
   if (id == "damage") {
     std::vector<double> shares = dissipated_by_cracks();
