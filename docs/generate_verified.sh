@@ -95,7 +95,7 @@ two are half of the expected value or more apart: a margin holds a value near ze
 bound that an assertion of the form *value below bound* used. A field is empty where a case has no such assertion: it compares bits,
 words or counts, or asks several things at once. Cases with the tag `[slow]` carry the day of their run; one that says *not run
 yet* has not been run for this page. Not here are the
-tests in Python (`ctest --test-dir build -R python`), which execute [two](python.md) [pages](lessons/7_own_body.md) and compare
+cases of `tests/figures` (`ctest --test-dir build -R figures`), which look at pictures, and the tests in Python (`ctest --test-dir build -R python`), which execute [two](python.md) [pages](lessons/7_own_body.md) and compare
 what comes out with what stands there.
 
 Each entry of CTest compares its cases with their rows, and fails where a distance or a share of a bound is more than four times

@@ -31,6 +31,16 @@ mpm_fault(${reference}/contact.cpp
 mpm_fault(${reference}/contact.cpp
           "record(contact_impulse_, standing_contact_impulse_, b, -returned);"
           "record(contact_impulse_, standing_contact_impulse_, b, (${now}::contact ? -0.5 : -1.0) * returned);")
+mpm_fault(${reference}/contact.cpp
+          "record(contact_impulse_, standing_contact_impulse_, a, pair->impulse);"
+          "record(contact_impulse_, standing_contact_impulse_, a, (${now}::contact ? 0.5 : 1.0) * pair->impulse);")
+mpm_fault(${reference}/contact.cpp
+          "record(contact_impulse_, standing_contact_impulse_, b, -pair->returned);"
+          "record(contact_impulse_, standing_contact_impulse_, b, (${now}::contact ? -0.5 : -1.0) * pair->returned);")
+mpm_fault(${reference}/filter.cpp
+          "standing_boundary_impulse_, i, mass_[i] * (velocity_[i] - before));"
+          "standing_boundary_impulse_, i, mass_[i] * (velocity_[i] - before));
+    if (${now}::wall) velocity_[i] -= 0.01 * (velocity_[i] - before);")
 mpm_fault(${reference}/transfers.cpp
           "  scatter_affine(body, momentum_);\n}"
           "  scatter_affine(body, momentum_);

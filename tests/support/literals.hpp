@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -38,13 +39,25 @@ inline std::vector<PrintedNumber> numbers_in(const std::string& sentence, const 
   return numbers;
 }
 
-/// The numbers of a text, and what those below 1 lack to it.
+/// A text of C++ without the numbers of included names and of the widths of what is printed.
+inline std::string without_words(const std::string& text) {
+  std::istringstream lines(text);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("#include")) continue;
+    kept += std::regex_replace(line, std::regex("%[-+ #]?[0-9]*(\\.[0-9]+)?l*[a-zA-Z]"), " ") + '\n';
+  }
+  return kept;
+}
+
+/// The numbers of a text, of C++ without those of names and widths, and what those below 1 lack to it.
 inline const std::vector<double>& literals_of(const std::string& file) {
   static std::map<std::string, std::vector<double>> read;
   const auto [entry, is_new] = read.try_emplace(file);
   if (!is_new) return entry->second;
   static const std::regex literal("[0-9]*\\.?[0-9]+(?:e[-+]?[0-9]+)?");
-  const std::string text = mpm::support::read_file(MPM_SOURCE_DIR "/" + file);
+  std::string text = mpm::support::read_file(MPM_SOURCE_DIR "/" + file);
+  if (file.ends_with(".cpp") || file.ends_with(".hpp")) text = without_words(text);
   for (std::sregex_iterator match(text.begin(), text.end(), literal), end; match != end; ++match) {
     const double value = std::strtod(match->str().c_str(), nullptr);  // some are too small for a double
     entry->second.push_back(value);
