@@ -36,6 +36,80 @@ Bars sliding(double ratio, double amplitude = 1e-4) {
   return bars;
 }
 
+/// Two blocks of 0.2 m by 0.2 m, one on the other, so stiff that they give a thousandth of what the layer between
+/// them gives. Walls keep them from turning. The normal is given: where the default's tilts at the ends of a face, the layer
+/// is softer. The upper one is thrown along an axis, and the lower one so that their centre of mass rests.
+struct Blocks {
+  double period;
+  std::string text;
+};
+Blocks stiff_blocks(double lower_mass, double upper_mass, bool held, std::size_t axis) {
+  const double stiffness = 1e4, area = 0.2, fast = 1e-3;  // N/m, m a metre of depth, m/s
+  const double inverse = 1 / upper_mass + (held ? 0 : 1 / lower_mass);
+  Blocks blocks{2 * std::numbers::pi / std::sqrt(stiffness * inverse), {}};
+  const auto along = [axis](double speed) {
+    return axis == 0 ? "[" + number(speed) + ", 0]" : "[0, " + number(speed) + "]";
+  };
+  const auto material = [](double mass) {
+    return R"({"type": "neo_hookean", "youngs_modulus": 2e7, "poisson_ratio": 0, "density": )" + number(mass / 0.04) +
+           "}";
+  };
+  blocks.text =
+      R"J({
+  "title": "stiff blocks on a spring", "dimension": 2, "precision": "double", "backend": "cpu",
+  "grid": {"cell_size": 0.05, "domain": )J" +
+      std::string(axis == 0 ? "[[-0.2, -0.2], [0.4, 0.2]]" : "[[0, -0.4], [0.2, 0.4]]") +
+      R"J(, "boundaries": {"all": "free", )J" +
+      (axis == 0 ? R"("y_min": "slip", "y_max": "slip")" : R"("x_min": "slip", "x_max": "slip")") + R"J(}},
+  "shape": {"type": "bspline_quadratic"}, "transfer": {"type": "apic"},
+  "contact": {"type": "linear_interface", "normal_stiffness": )J" +
+      number(stiffness / area) + R"J(, "shear_stiffness": )J" + number(stiffness / area) +
+      R"J(, "normal": {"type": "given", "x": 0, "y": 1}},
+  "materials": {"lower": )J" +
+      material(lower_mass) + R"J(, "upper": )J" + material(upper_mass) +
+      R"J(},
+  "bodies": [
+    {"name": "lower", "material": "lower", "geometry": {"type": "box", "lower": [0, -0.2], "upper": [0.2, 0]}, "velocity": )J" +
+      along(held ? 0 : -fast * upper_mass / lower_mass) +
+      R"J(},
+    {"name": "upper", "material": "upper", "geometry": {"type": "box", "lower": [0, 0], "upper": [0.2, 0.2]}, "velocity": )J" +
+      along(fast) + "}]," +
+      (held ? R"J(
+  "grips": [{"name": "held", "body": "lower", "velocity": [0, 0], "where": {"type": "box", "lower": [0, -0.2], "upper": [0.2, 0]}}],)J"
+            : "") +
+      R"J(
+  "solver": {"time_step": "auto", "end_time": 1}, "output": {"ledger": false}})J";
+  return blocks;
+}
+
+/// The mean velocity of the upper block past the lower one, m/s.
+double velocity_past(const Scene& scene, std::size_t axis) {
+  double past = 0;
+  for (const int body : {0, 1}) {
+    const BodyState state = scene.body(body);
+    double sum = 0;
+    for (std::size_t k = axis; k < state.velocity.size(); k += 2) sum += state.velocity[k];
+    past += (body == 0 ? -2 : 2) * sum / static_cast<double>(state.velocity.size());
+  }
+  return past;
+}
+
+/// The period from the first and the fifth time at which that velocity passes through zero, two periods apart, s.
+double period_of(const Blocks& blocks, std::size_t axis, std::vector<std::string> settings) {
+  settings.push_back(set("/solver/end_time", digits(3 * blocks.period)));
+  Scene scene(blocks.text, settings);
+  std::vector<double> zeros;
+  double before = velocity_past(scene, axis), time = 0;
+  while (!scene.simulation.finished() && zeros.size() < 5) {
+    scene.simulation.step();
+    const double now = velocity_past(scene, axis), at = scene.simulation.time();
+    if (now * before < 0) zeros.push_back(time + (at - time) * before / (before - now));
+    before = now, time = at;
+  }
+  REQUIRE(zeros.size() == 5);
+  return (zeros[4] - zeros[0]) / 2;
+}
+
 /// A slab slides on a frozen bed, pressed by its weight, without ends.
 const char* slab = R"J({
   "title": "slab on a liquid film", "dimension": 2, "precision": "double", "backend": "cpu",
@@ -93,6 +167,28 @@ TEST_CASE("a layer swings alike wherever its plane lies in a cell, on every back
     check(update, {set("/solver/stress_update", update)});
   check("bilinear", {"/contact={\"type\": \"bilinear_interface\", \"shear_stiffness\": 0, \"tension_stiffness\": " +
                      digits(bars.stiffness) + ", \"compression_stiffness\": " + digits(bars.stiffness) + "}"});
+}
+
+// Nearly rigid: T = 2 pi / sqrt(D A (1/m1 + 1/m2)), D A = 1e4 N/m. 1 kg on a block that is held: 0.06283185 s; 1 kg and 3 kg:
+// 0.05441398 s.
+TEST_CASE("stiff blocks on a spring swing with the period of their masses", "[interface]") {
+  for (const bool held : {true, false})
+    for (const std::size_t axis : {std::size_t{1}, std::size_t{0}}) {
+      const Blocks blocks = held ? stiff_blocks(1, 1, true, axis) : stiff_blocks(1, 3, false, axis);
+      const double exact = held ? 0.06283185 : 0.05441398;
+      REQUIRE(blocks.period == Approx(exact).epsilon(1e-6));
+      for (const char* transfer : {"flip", "apic"})
+        for (const double courant : {0.5, 0.1})
+          for (const char* cell : {"0.05", "0.025"}) {
+            if (courant < 0.5 && cell != std::string("0.05")) continue;
+            const double found = period_of(blocks, axis,
+                                           {set("/transfer/type", transfer), set("/solver/courant", digits(courant)),
+                                            set("/grid/cell_size", cell)});
+            INFO((held ? "held" : "both free") << ", along " << (axis == 1 ? "the normal" : "the face") << ", "
+                                               << transfer << ", courant " << courant << ", cells of " << cell << " m");
+            CHECK(found == Approx(exact).epsilon(0.005));
+          }
+    }
 }
 
 TEST_CASE("bars on a spring keep their swing", "[interface]") {
