@@ -205,6 +205,29 @@ TEST_CASE("friction heat of a sliding block is mu N s for every transfer, and th
   }
 }
 
+// With r the ramp and R its integral, N = r m g cos and v = a R, so that mu N v adds up to mu m g cos a R(T)^2 / 2.
+TEST_CASE("friction heat of a block whose weight grows slowly is mu N s for every transfer", "[ledger][friction]") {
+  constexpr double mu = 0.15, grown = 0.2;
+  const std::string grows = "*(0.5*(1-cos(pi*t/0.2))*(t<0.2)+(t>=0.2))";
+  const auto check = [&](const std::string& backend, const std::string& transfer, const std::string& courant) {
+    INFO(backend << " " << transfer << " courant " << courant);
+    Scene scene(incline, {"/gravity=[0, 0]", "/body_force=[\"4.905" + grows + "\", \"-8.495709211" + grows + "\"]",
+                          set("/contact/friction", digits(mu)), set("/backend", backend),
+                          set("/transfer/type", transfer), set("/solver/courant", courant)});
+    const Totals end = scene.run();
+    const double a = g * (sine - mu * cosine), R = end.time - grown / 2;
+    const double heat = mu * 0.5 * end.mass * g * cosine * a * R * R / 2;
+    const Ledger& ledger = scene.simulation.ledger();
+    INFO("heat " << ledger.friction << " of " << heat << " J/m");
+    CHECK(ledger.friction == Approx(heat).epsilon(0.01));
+    CHECK(end.kinetic == Approx(0.25 * end.mass * a * a * R * R).epsilon(0.01));
+    CHECK(std::abs(scene.metrics.ledger_residual(end)) < 0.01 * heat);
+  };
+  for (const Plugin* transfer : plugins().of_kind(MPM_TRANSFER))
+    for (const std::string courant : {"0.3", "0.1", "0.03"}) check("cpu", std::string(transfer->id()), courant);
+  for (const std::string transfer : {"flip", "apic"}) check("reference", transfer, "0.3");
+}
+
 TEST_CASE("friction heat of a sliding block is mu N s with filters", "[ledger][friction][filters]") {
   const double mu = 0.15, weight = 100 * g * cosine;
   const double way = 0.5 * g * (sine - mu * cosine) * 0.6 * 0.6;
