@@ -54,6 +54,16 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
+/// The slope of log(y) over log(x) by least squares.
+double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  double n = 0, along = 0, up = 0, squares = 0, products = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double a = std::log(x[k]), b = std::log(y[k]);
+    n += 1, along += a, up += b, squares += a * a, products += a * b;
+  }
+  return (n * products - along * up) / (n * squares - along * along);
+}
+
 std::vector<double> places() {
   std::vector<double> result;
   for (int k = -20; k <= 20; ++k) result.push_back(0.025 * k);
@@ -93,6 +103,39 @@ TEST_CASE("means over the places of a face are those that are published", "[cont
   CHECK(mean_contact_offset(shape("gimp"), {1}) == Approx(1.05).margin(5e-3));
   CHECK(contact_offsets(shape("gimp"), {2}, {0})[0] == Approx(0.75).epsilon(1e-14));
   CHECK(contact_offsets(shape("gimp"), {1}, {0})[0] == Approx(1.0).epsilon(1e-14));
+}
+
+// On a node, rows at (k + 1/2)/n and boxes of 1/n give 1, 3/4, 19/27 and 11/16: a power of log2(4/3) = 0.42 from one particle
+// to two, as the published 1.07 and 0.8 have, and less from there on, as the offset goes to that of an even density. So the
+// published power of 0.58 is none over particles a cell.
+TEST_CASE("the offset of uGIMP is no power of the particles a cell", "[contact]") {
+  const std::array<double, 4> exact{1, 3.0 / 4, 19.0 / 27, 11.0 / 16};
+  std::vector<double> means, numbers;
+  for (const int n : {1, 2, 3, 4}) {
+    CHECK(contact_offsets(shape("gimp"), {n}, {0})[0] == Approx(exact[static_cast<std::size_t>(n - 1)]).epsilon(1e-12));
+    means.push_back(mean_contact_offset(shape("gimp"), {n})), numbers.push_back(n);
+  }
+  const auto falls = [&](std::size_t from) {
+    return -std::log(means[from] / means[from - 1]) / std::log(numbers[from] / numbers[from - 1]);
+  };
+  CHECK(falls(1) == Approx(std::log(1.07 / 0.8) / std::log(2.0)).margin(0.015));
+  CHECK(falls(2) < falls(1) / 2);
+  CHECK(falls(3) < falls(2));
+  CHECK(-log_slope(numbers, means) == Approx(0.28).margin(5e-3));
+}
+
+// It is one over the distance d by which a node sees the mean of a body: with its edge e before the node, both in cells, d runs
+// from 1.25 at e = -1, where the last row of two particles a cell goes out of sight, to 0 at e = 1.
+TEST_CASE("a power of 0.58 tells where the edge of uGIMP with two particles a cell is", "[contact]") {
+  const EdgeModel model(shape("gimp"), 2);
+  std::vector<double> seen, lies;
+  for (int k = -36; k <= 36; ++k) {
+    const double edge = 0.025 * k, distance = -model.mean_position(edge);
+    seen.push_back(distance / 1.25), lies.push_back((1 - edge) / 2);
+    INFO(edge);
+    CHECK(1 - 2 * std::pow(distance / 1.25, 0.58) == Approx(edge).margin(0.027));
+  }
+  CHECK(log_slope(seen, lies) == Approx(0.58).margin(0.02));
 }
 
 TEST_CASE("tents with one row a cell are as far apart as their nearest rows", "[contact]") {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "plan/step_builder.hpp"
+#include "solvers/solver.hpp"
 #include "support/catch.hpp"
 #include "support/scene.hpp"
 
@@ -249,4 +250,34 @@ TEST_CASE("forces per mass have a field of their own where a ledger or a backend
   CHECK(beside.node_field("point_load"));
   CHECK(!beside.node_field("force")->for_ledger);
   CHECK(!beside.node_field("body_force"));
+}
+
+TEST_CASE("a scene without contact holds and does nothing for it, whatever bodies and other choices it has", "[plan]") {
+  const std::string apart =
+      R"(/bodies=[{"name": "b", "material": "a", "geometry": {"type": "box", "lower": [0, 0], "upper": [0.5, 0.5]}},
+                  {"name": "c", "material": "a", "geometry": {"type": "box", "lower": [0.5, 0], "upper": [1, 0.5]}}])";
+  /// Fields, operators and fields of velocity beyond the first that contact has asked for.
+  const auto asked = [&](std::vector<std::string> overrides) {
+    overrides.insert(overrides.begin(), apart);
+    const Plan plan = make_plan(mpm::test::experiment_from(block, overrides));
+    long count = plan.velocity_fields - 1;
+    const auto for_contact = [](const std::string& because) { return because.find("/contact") != because.npos; };
+    for (const Field& field : plan.fields) count += field.for_contact || for_contact(field.because) ? 1 : 0;
+    for_each_pass(plan.step, [&](const Pass& pass) {
+      for (const Operator& operation : pass.operators) count += for_contact(operation.because) ? 1 : 0;
+    });
+    return count + (plan.does(Act::scatter_contact) ? 1 : 0) + (plan.does(Act::keep_contact_state) ? 1 : 0);
+  };
+  for (const std::string transfer : {"pic", "flip", "apic", "mls"})
+    for (const std::string more :
+         {"/output/ledger=false", "/output/ledger=true", R"(/filter={"type": "fmpm", "order": 3, "every_steps": 4})",
+          "/solver/stress_update=averaged"})
+      for (const std::string shape : {"linear", "bspline_quadratic", "cpdi"}) {
+        INFO(transfer << " " << more << " " << shape);
+        const std::vector<std::string> scene{"/transfer/type=" + transfer, "/shape/type=" + shape, more};
+        CHECK(asked(scene) == 0);
+        std::vector<std::string> with = scene;
+        with.emplace_back(R"(/contact={"type": "coulomb", "friction": 0.3})");
+        CHECK(asked(with) > 5);
+      }
 }
