@@ -86,7 +86,7 @@ double lets_go_at(Scene& scene) {
   while (!scene.simulation.finished()) {
     scene.simulation.step();
     const long nodes = scene.simulation.backend().contact_record().sticking;
-    most = std::max(most, nodes);
+    most = larger(most, nodes);
     if (nodes < 0.8 * static_cast<double>(most)) return scene.simulation.time();
   }
   return 0;
